@@ -154,8 +154,9 @@ mod tests {
 
     fn request(batch: u32, own: Vec<OwnChoice>, others: Vec<PairCount>) -> PairRequest {
         let levels: Vec<String> = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
-        let clip = |cell: &str| levels.iter().map(move |level| format!("{cell}.{level}"));
-        let clips = clip("joy").chain(clip("fear")).collect();
+        let cells = ["joy", "fear"].into_iter();
+        let clip = |cell| levels.iter().map(move |level| format!("{cell}.{level}"));
+        let clips = cells.flat_map(clip).collect();
         let pairs = DealtPairs { clips, levels: levels.clone(), active: 9, ..DealtPairs::default() };
         PairRequest {
             step: "duels/active-1".to_owned(),

@@ -39,6 +39,7 @@ pub fn takes_part(study: &Study, started: &SessionStarted, steps: usize) -> (Vec
                 clip: clip.clone(),
                 beside: None,
                 panel: Vec::new(),
+                batch: None,
             });
             log.add(EventKind::TrialPlayed { step: id.clone(), log: Box::new(play(log.now_ms)) });
             log.add(EventKind::TrialFinished {
