@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place } from "./lib/participant.mjs";
+import { go, phase, place, through } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, text } from "./lib/small_study.mjs";
 
@@ -45,38 +45,24 @@ test("reverse correlation: faces are drawn in the browser, and drawn again by th
   const asked = [];
   page.on("request", (request) => asked.push(new URL(request.url()).pathname));
   try {
-    await page.goto(`${server.url}/s/faces/?backend=webgl2`);
-    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(page);
-    let trials = 0;
-    while (here.view !== "end") {
-      if (here.view === "receipt") {
-        here = await leave(page, here, 60_000);
-        continue;
-      }
-      if (here.view === "trial") {
-        trials += 1;
+    const trials = await through(page, `${server.url}/s/faces/?backend=webgl2`, async (here, number) => {
+      await go(page, "keyboard");
+      await phase(page, "playing");
+      if (number === RELOADED_AT) {
+        await page.reload();
+        await page.waitForSelector("main[data-view=trial]", { timeout: 30_000 });
+        assert.equal((await place(page)).step, here.step, "the same trial");
         await phase(page, "ready", 120_000);
         await go(page, "keyboard");
         await phase(page, "playing");
-        if (trials === RELOADED_AT) {
-          await page.reload();
-          await page.waitForSelector("main[data-view=trial]", { timeout: 30_000 });
-          assert.equal((await place(page)).step, here.step, "the same trial");
-          await phase(page, "ready", 120_000);
-          await go(page, "keyboard");
-          await phase(page, "playing");
-        }
-        await page.waitForTimeout(900);
-        await page.screenshot({ path: join(shots, `trial-${trials}.png`) });
-        await phase(page, "answering", 60_000);
-        if (trials === 1) assert.deepEqual(await violations(page), [], "axe");
-        await page.locator(`fieldset[data-question=emotion] label:has(input[value=${OPTIONS[trials % 3]}])`).click();
-        await page.locator("fieldset[data-question=strength] label").nth(trials % 5).click();
       }
-      await go(page, "keyboard");
-      here = await leave(page, here, 60_000);
-    }
+      await page.waitForTimeout(900);
+      await page.screenshot({ path: join(shots, `trial-${number}.png`) });
+      await phase(page, "answering", 60_000);
+      if (number === 1) assert.deepEqual(await violations(page), [], "axe");
+      await page.locator(`fieldset[data-question=emotion] label:has(input[value=${OPTIONS[number % 3]}])`).click();
+      await page.locator("fieldset[data-question=strength] label").nth(number % 5).click();
+    });
     assert.equal(trials, TRIALS);
     assert.deepEqual(browser.errors, [], "the console is clean");
     const loaded = (end) => asked.filter((path) => path.endsWith(end)).length;

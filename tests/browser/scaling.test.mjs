@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place } from "./lib/participant.mjs";
+import { go, phase, through } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text } from "./lib/small_study.mjs";
 
@@ -34,32 +34,18 @@ test("scaling: three levels in step, and which two differ more", { skip: unable,
   const shots = screenshotFolder("scaling");
   const { page } = browser;
   try {
-    await page.goto(`${server.url}/s/scale/?backend=webgl2`);
-    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(page);
-    let trials = 0;
-    while (here.view !== "end") {
-      if (here.view === "receipt") {
-        here = await leave(page, here, 60_000);
-        continue;
-      }
-      if (here.view === "trial") {
-        trials += 1;
-        await phase(page, "ready", 120_000);
-        const captions = await page.locator(".stage-frame.panel figcaption").allTextContents();
-        assert.deepEqual(captions, ["A", "B", "C"]);
-        await go(page, "keyboard");
-        await phase(page, "playing");
-        await page.waitForTimeout(1500);
-        await page.screenshot({ path: join(shots, `trial-${trials}.png`) });
-        await phase(page, "answering", 120_000);
-        assert.equal(await page.locator(".panel-row, .play-alone").count(), 0, "nothing is rated one by one");
-        if (trials === 1) assert.deepEqual(await violations(page), [], "axe");
-        await page.locator(`fieldset[data-question=larger] label:has(input[value=${trials % 2 ? "second" : "first"}])`).click();
-      }
+    const trials = await through(page, `${server.url}/s/scale/?backend=webgl2`, async (_, number) => {
+      const captions = await page.locator(".stage-frame.panel figcaption").allTextContents();
+      assert.deepEqual(captions, ["A", "B", "C"]);
       await go(page, "keyboard");
-      here = await leave(page, here, 60_000);
-    }
+      await phase(page, "playing");
+      await page.waitForTimeout(1500);
+      await page.screenshot({ path: join(shots, `trial-${number}.png`) });
+      await phase(page, "answering", 120_000);
+      assert.equal(await page.locator(".panel-row, .play-alone").count(), 0, "nothing is rated one by one");
+      if (number === 1) assert.deepEqual(await violations(page), [], "axe");
+      await page.locator(`fieldset[data-question=larger] label:has(input[value=${number % 2 ? "second" : "first"}])`).click();
+    });
     assert.equal(trials, TRIALS);
     assert.deepEqual(browser.errors, [], "the console is clean");
     const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.trial_type === "trial");

@@ -1,12 +1,14 @@
 //! Blocks of reverse correlation: simulated people go through the study as a browser would, and the report finds the
 //! faces that they have in mind.
 
+#[path = "support/results.rs"]
+mod results;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{FacePart, Language, Parameters, Report, Simulation, analyze};
-use mimique_stats::Table;
+use mimique_analysis::{FacePart, Language, Parameters, Simulation};
 use mimique_study::Study;
+use results::{careful, report, text};
 use serde_json::Value;
 use simulated::simulated_export;
 
@@ -19,26 +21,10 @@ fn study() -> Study {
 
 /// People who have these faces in mind, who answer with care and all come to the end.
 fn export(study: &Study, change: impl FnOnce(&mut Parameters)) -> String {
-    let mut parameters = Parameters::for_study(study);
-    parameters.careless.share = 0.0;
-    parameters.dropout.declined = 0.0;
-    parameters.dropout.per_trial = 0.0;
+    let mut parameters = careful(study);
     change(&mut parameters);
     parameters.check(study).unwrap();
     simulated_export(&Simulation::new(study, "hash", &parameters, 5).unwrap(), study, PEOPLE)
-}
-
-fn report(study: &Study, csv: &str, language: Language) -> (Report, Value) {
-    let table = Table::parse(csv.as_bytes()).unwrap();
-    let report = analyze(&table, study, language).unwrap();
-    let file = report.files.iter().find(|file| file.path == "results.json").unwrap();
-    let results = serde_json::from_str(&file.text).unwrap();
-    (report, results)
-}
-
-fn text(report: &Report, path: &str) -> String {
-    let file = report.files.iter().find(|file| file.path == path);
-    file.unwrap_or_else(|| panic!("{path} is written")).text.clone()
 }
 
 /// Units whose presence goes with a category, p 0.05 or less.
@@ -47,7 +33,8 @@ fn found(results: &Value, category: &str) -> Vec<String> {
     let own = categories.iter().find(|own| own["category"] == category).unwrap();
     let units = own["group"]["units"].as_array().unwrap();
     let is_found = |unit: &&Value| {
-        unit["presence"]["p"].as_f64().unwrap() <= 0.05 && unit["presence"]["z"].as_f64().unwrap() > 0.0
+        unit["presence"]["p"].as_f64().unwrap() <= 0.05
+            && unit["presence"]["z"].as_f64().unwrap() > 0.0
     };
     units.iter().filter(is_found).map(|unit| unit["unit"].as_str().unwrap().to_owned()).collect()
 }
@@ -122,10 +109,19 @@ fn templates_that_the_study_cannot_have_are_refused_by_name() {
     let base = Parameters::for_study(&study);
     for (text, says) in [
         (r#"{"templates": {"face": {}}}"#, "/templates/face"),
-        (r#"{"templates": {"faces": {"categories": {"fear": [{"unit": "AU01"}]}}}}"#, "no option \"fear\""),
-        (r#"{"templates": {"faces": {"categories": {"joy": [{"unit": "AU43"}]}}}}"#, "\"AU43\" is not drawn"),
+        (
+            r#"{"templates": {"faces": {"categories": {"fear": [{"unit": "AU01"}]}}}}"#,
+            "no option \"fear\"",
+        ),
+        (
+            r#"{"templates": {"faces": {"categories": {"joy": [{"unit": "AU43"}]}}}}"#,
+            "\"AU43\" is not drawn",
+        ),
         (r#"{"templates": {"faces": {"categories": {"joy": []}}}}"#, "a face without units"),
-        (r#"{"templates": {"faces": {"categories": {"joy": [{"unit": "AU12", "atSeconds": 3}]}}}}"#, "3 s is no time"),
+        (
+            r#"{"templates": {"faces": {"categories": {"joy": [{"unit": "AU12", "atSeconds": 3}]}}}}"#,
+            "3 s is no time",
+        ),
         (r#"{"templates": {"faces": {"noise": -1}}}"#, "/templates/faces/noise"),
         (r#"{"templates": {"faces": {"otherwise": "nothing"}}}"#, "no option \"nothing\""),
     ] {

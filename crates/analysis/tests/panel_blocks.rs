@@ -26,7 +26,7 @@ fn without_exclusion() -> Study {
     let mut study = study();
     let mut block = study.panel_blocks().next().unwrap().1;
     block.exclude = None;
-    let block = PanelBlock(serde_json::to_value(block).unwrap());
+    let block = PanelBlock::new(serde_json::to_value(block).unwrap());
     study.components.insert("quality".to_owned(), mimique_study::Component::Panel(block));
     study
 }

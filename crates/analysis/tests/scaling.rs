@@ -1,12 +1,14 @@
 //! Blocks of difference scaling: simulated people go through the study as a browser would, and the report finds the
 //! scale that they perceive.
 
+#[path = "support/results.rs"]
+mod results;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{Language, Parameters, Report, Simulation, analyze};
-use mimique_stats::Table;
+use mimique_analysis::{Language, Simulation};
 use mimique_study::Study;
+use results::{careful, report, text};
 use serde_json::Value;
 use simulated::simulated_export;
 
@@ -21,27 +23,11 @@ fn study(change: impl FnOnce(&mut Value)) -> Study {
 
 /// People who perceive this scale, who answer with care and all come to the end.
 fn export(study: &Study, range: f64, exponent: f64) -> String {
-    let mut parameters = Parameters::for_study(study);
+    let mut parameters = careful(study);
     let own = parameters.scaling.get_mut("scale").unwrap();
     (own.range, own.exponent, own.lapse) = (range, exponent, 0.0);
-    parameters.careless.share = 0.0;
-    parameters.dropout.declined = 0.0;
-    parameters.dropout.per_trial = 0.0;
     parameters.check(study).unwrap();
     simulated_export(&Simulation::new(study, "hash", &parameters, 5).unwrap(), study, PEOPLE)
-}
-
-fn report(study: &Study, csv: &str, language: Language) -> (Report, Value) {
-    let table = Table::parse(csv.as_bytes()).unwrap();
-    let report = analyze(&table, study, language).unwrap();
-    let file = report.files.iter().find(|file| file.path == "results.json").unwrap();
-    let results = serde_json::from_str(&file.text).unwrap();
-    (report, results)
-}
-
-fn text(report: &Report, path: &str) -> String {
-    let file = report.files.iter().find(|file| file.path == path);
-    file.unwrap_or_else(|| panic!("{path} is written")).text.clone()
 }
 
 #[test]
@@ -53,7 +39,10 @@ fn planted_scales_are_found_again_by_triads_and_quadruples() {
             let block = &results["scalings"][0];
             assert_eq!((&block["block"], &block["parameter"]), (&"scale".into(), &"alpha".into()));
             let scale = &block["scale"];
-            assert_eq!((&scale["trials"], &scale["participants"]), (&(40 * PEOPLE).into(), &PEOPLE.into()));
+            assert_eq!(
+                (&scale["trials"], &scale["participants"]),
+                (&(40 * PEOPLE).into(), &PEOPLE.into())
+            );
             for (place, level) in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].into_iter().enumerate() {
                 assert_eq!(scale["levels"][place], level);
                 let found = scale["scale"][place].as_f64().unwrap();
@@ -74,7 +63,9 @@ fn the_report_draws_the_scale_and_asks_nothing_else_of_the_answers() {
     let page = text(&written, "report.md");
     assert!(page.contains("1200 judgements of 30 people"), "{page}");
     assert!(!page.contains("Which two faces differ more?"), "no other section has its answers");
-    assert!(text(&written, "figures/scale-scale.svg").contains("standard deviations of a judgement"));
+    assert!(
+        text(&written, "figures/scale-scale.svg").contains("standard deviations of a judgement")
+    );
     assert_eq!(text(&written, "tables/scale-scale.csv").lines().count(), 7);
     let (written, _) = report(&study, &csv, Language::French);
     assert!(text(&written, "report.md").contains("1200 jugements de 30 personnes"));

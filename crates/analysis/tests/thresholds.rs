@@ -1,12 +1,14 @@
 //! Thresholds of adaptive blocks: planted ones are found again, those outside the levels are told as such, and levels
 //! that answers do not give are an error that is named.
 
+#[path = "support/results.rs"]
+mod results;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{Language, Parameters, Report, Simulation, analyze};
-use mimique_stats::Table;
+use mimique_analysis::{Language, Simulation};
 use mimique_study::Study;
+use results::{careful, report, text};
 use serde_json::Value;
 use simulated::simulated_export;
 
@@ -19,26 +21,10 @@ fn study() -> Study {
 
 /// People whose thresholds lie here, who answer with care and all come to the end.
 fn export(study: &Study, threshold: f64) -> String {
-    let mut parameters = Parameters::for_study(study);
+    let mut parameters = careful(study);
     let own = parameters.discrimination.get_mut("limit").unwrap();
     (own.threshold, own.person_sd, own.spread) = (threshold, 0.0, 0.08);
-    parameters.careless.share = 0.0;
-    parameters.dropout.declined = 0.0;
-    parameters.dropout.per_trial = 0.0;
     simulated_export(&Simulation::new(study, "hash", &parameters, 5).unwrap(), study, PEOPLE)
-}
-
-fn report(study: &Study, csv: &str, language: Language) -> (Report, Value) {
-    let table = Table::parse(csv.as_bytes()).unwrap();
-    let report = analyze(&table, study, language).unwrap();
-    let file = report.files.iter().find(|file| file.path == "results.json").unwrap();
-    let results = serde_json::from_str(&file.text).unwrap();
-    (report, results)
-}
-
-fn text(report: &Report, path: &str) -> String {
-    let file = report.files.iter().find(|file| file.path == path);
-    file.unwrap_or_else(|| panic!("{path} is written")).text.clone()
 }
 
 #[test]

@@ -6,12 +6,12 @@ use mimique_avatar::pack::PackError;
 use mimique_solver::{FitError, FrontEndError, MethodSpec, Operators};
 
 use crate::frame_statistics::FrameStatistics;
-use mimique_solver::weights_hash;
 use crate::packs::{
     SegmentMarkers, TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
 };
 use crate::pipeline::{MarkerTake, PipelineError, solve_markers};
 use crate::weight_timing::time_weights;
+use mimique_solver::weights_hash;
 
 /// The weights of a clip.
 #[derive(Debug, Clone, PartialEq)]

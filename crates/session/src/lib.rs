@@ -14,8 +14,8 @@ pub mod wire;
 
 pub use admission::{Admission, Misfit, SessionLimits};
 pub use event::{
-    Calibrated, ChosenClips, Client, EventKind, LevelShown, PlayLog, ShownBeside, ShownInPanel, SoundLog,
-    StageFailure,
+    Calibrated, ChosenClips, Client, EventKind, LevelShown, PlayLog, ShownBeside, ShownInPanel,
+    SoundLog, StageFailure,
 };
 pub use flow::SOUND_HEARD;
 pub use record::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep, Record};

@@ -7,7 +7,9 @@ use mimique_session::flow::{Effect, Input, Plan, State, update};
 use mimique_session::rows::{SessionRecord, Table, tidy};
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Admission, Client, PlayLog};
-use mimique_study::{ClipSource, Draw, ReverseCorrelationComponent, ShownCourse, Study, UnitShapes};
+use mimique_study::{
+    ClipSource, Draw, ReverseCorrelationComponent, ShownCourse, Study, UnitShapes,
+};
 use serde_json::{Value, json};
 
 const SEED: u64 = 20_261_126;
@@ -172,7 +174,10 @@ fn every_trial_has_a_face_of_its_own_which_the_export_draws_again() {
             continue;
         }
         let cell = |name: &str| table.cell(row, name);
-        assert_eq!((cell("stimulus"), cell("weights_expected")), (&json!("faces@drawn"), &json!(true)));
+        assert_eq!(
+            (cell("stimulus"), cell("weights_expected")),
+            (&json!("faces@drawn"), &json!(true))
+        );
         assert_eq!(cell("trial_type"), "trial");
         faces.push(serde_json::from_str(cell("trajectories").as_str().unwrap()).unwrap());
     }

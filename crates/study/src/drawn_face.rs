@@ -76,12 +76,7 @@ impl ReverseCorrelationComponent {
         let activations = design.activations(shown, RATE_HZ);
         let weights = weights_of_units(&avatar.units, &activations, avatar.shapes);
         let hash = weights_hash(&weights);
-        DrawnFace {
-            weights,
-            frames: design.frames(RATE_HZ),
-            rate_hz: RATE_HZ,
-            weights_hash: hash,
-        }
+        DrawnFace { weights, frames: design.frames(RATE_HZ), rate_hz: RATE_HZ, weights_hash: hash }
     }
 
     /// Trajectories with the names of their units.

@@ -157,7 +157,8 @@ mod tests {
         let cells = ["joy", "fear"].into_iter();
         let clip = |cell| levels.iter().map(move |level| format!("{cell}.{level}"));
         let clips = cells.flat_map(clip).collect();
-        let pairs = DealtPairs { clips, levels: levels.clone(), active: 9, ..DealtPairs::default() };
+        let pairs =
+            DealtPairs { clips, levels: levels.clone(), active: 9, ..DealtPairs::default() };
         PairRequest {
             step: "duels/active-1".to_owned(),
             component: "duels".to_owned(),
@@ -210,7 +211,8 @@ mod tests {
         assert_eq!(drawn.answers, 766);
         let asks = |one: &str, other: &str| {
             drawn.pairs.iter().any(|pair| {
-                pair.iter().any(|clip| clip.ends_with(one)) && pair.iter().any(|clip| clip.ends_with(other))
+                pair.iter().any(|clip| clip.ends_with(one))
+                    && pair.iter().any(|clip| clip.ends_with(other))
             })
         };
         assert!(asks(".a", ".b"), "{:?}", drawn.pairs);

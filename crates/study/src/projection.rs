@@ -8,10 +8,9 @@ use serde_json::Value;
 
 use crate::question::Question;
 use crate::study_file::{
-    AdaptiveBlock, AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact,
-    DeviceRules, LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
-    ReverseCorrelationBlock, ScalingBlock,    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
-    questions_among,
+    AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, JsonBlock,
+    LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule,
+    Section, Sequence, SoundPages, Study, Training, Translations, Triggers, questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
@@ -130,15 +129,15 @@ impl Study {
         }
         for (name, block) in self.adaptive() {
             let block = serde_json::to_value(block).unwrap_or_default();
-            components.insert(name.to_owned(), Component::Adaptive(AdaptiveBlock(block)));
+            components.insert(name.to_owned(), Component::Adaptive(JsonBlock::new(block)));
         }
         for (name, block) in self.scalings() {
             let block = serde_json::to_value(block).unwrap_or_default();
-            components.insert(name.to_owned(), Component::Scaling(ScalingBlock(block)));
+            components.insert(name.to_owned(), Component::Scaling(JsonBlock::new(block)));
         }
         for (name, block) in self.reverse_correlations() {
             let block = serde_json::to_value(block).unwrap_or_default();
-            let block = Component::ReverseCorrelation(ReverseCorrelationBlock(block));
+            let block = Component::ReverseCorrelation(JsonBlock::new(block));
             components.insert(name.to_owned(), block);
         }
         components

@@ -129,3 +129,22 @@ export async function storedEvents(page, server, study) {
   const { events } = await (await fetch(`${server.url}/api/sessions/${session}`)).json();
   return events.map(({ body }) => body);
 }
+
+/** Goes through a study from its first page to its last by the keyboard; `trial(here, number)` takes each trial, from 1,
+    from where it can be played to where its answers can be sent. Resolves with how many there were. */
+export async function through(page, address, trial) {
+  await page.goto(address);
+  await page.waitForSelector("main[data-view]", { timeout: 30_000 });
+  let here = await place(page);
+  let trials = 0;
+  while (here.view !== "end") {
+    if (here.view === "trial") {
+      trials += 1;
+      await phase(page, "ready", 120_000);
+      await trial(here, trials);
+    }
+    if (here.view !== "receipt") await go(page, "keyboard");
+    here = await leave(page, here, 60_000);
+  }
+  return trials;
+}

@@ -23,7 +23,8 @@
 //! It is the same [`mimique_study::ClosedLoop`] that exports replay, so that the levels have the same bits.
 
 use mimique_study::{
-    AdaptiveComponent, ClosedLoop, Draw, DrawnFace, PairRequest, ReverseCorrelationComponent, UnitShapes,
+    AdaptiveComponent, ClosedLoop, Draw, DrawnFace, PairRequest, ReverseCorrelationComponent,
+    UnitShapes,
 };
 use serde::Deserialize;
 use serde_json::{Value, json};

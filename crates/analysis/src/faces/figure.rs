@@ -49,7 +49,8 @@ fn runs(z: &[f64], critical: f64) -> Vec<[usize; 2]> {
     let side = |z: f64| if z.abs() > critical { z.signum() } else { 0.0 };
     let mut found: Vec<[usize; 2]> = Vec::new();
     for (bin, &value) in z.iter().enumerate() {
-        let goes_on = found.last().is_some_and(|[_, to]| *to == bin && side(z[bin - 1]) == side(value));
+        let goes_on =
+            found.last().is_some_and(|[_, to]| *to == bin && side(z[bin - 1]) == side(value));
         match found.last_mut() {
             _ if side(value) == 0.0 => {}
             Some(run) if goes_on => run[1] = bin + 1,

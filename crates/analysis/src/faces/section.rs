@@ -125,8 +125,18 @@ impl Writer<'_> {
         let framed = group.units.iter().filter(|unit| unit.p.iter().any(|p| *p <= LEVEL));
         let framed: Vec<&str> = framed.map(|unit| unit.unit.as_str()).collect();
         let alt = language.pick(
-            format!("Heat map of {} action units by {} times. Significant at some time: {}.", group.units.len(), found.images.times_s.len(), listed(&framed, "none")),
-            format!("Carte de {} unités d’action par {} moments. Significatives à un moment : {}.", group.units.len(), found.images.times_s.len(), listed(&framed, "aucune")),
+            format!(
+                "Heat map of {} action units by {} times. Significant at some time: {}.",
+                group.units.len(),
+                found.images.times_s.len(),
+                listed(&framed, "none")
+            ),
+            format!(
+                "Carte de {} unités d’action par {} moments. Significatives à un moment : {}.",
+                group.units.len(),
+                found.images.times_s.len(),
+                listed(&framed, "aucune")
+            ),
         );
         self.figure(Figure { id, caption, alt, svg, data });
     }
@@ -216,7 +226,10 @@ impl Writer<'_> {
         let peaks: Vec<String> = courses.iter().map(peak).collect();
         let alt = language.pick(
             format!("Lines over the seconds of the clip, highest: {}.", peaks.join(", ")),
-            format!("Courbes au fil des secondes de l’extrait, au plus haut : {}.", peaks.join(", ")),
+            format!(
+                "Courbes au fil des secondes de l’extrait, au plus haut : {}.",
+                peaks.join(", ")
+            ),
         );
         self.figure(Figure { id, caption, alt, svg, data });
     }

@@ -9,7 +9,8 @@ use crate::scaling::ROUNDS;
 /// Which levels are shown.
 pub(super) fn design(text: &mut Text, study: &Study, language: Language) {
     for (name, block) in study.scalings() {
-        let levels: Vec<String> = block.levels.iter().map(|level| language.number(*level)).collect();
+        let levels: Vec<String> =
+            block.levels.iter().map(|level| language.number(*level)).collect();
         let (levels, trials) = (levels.join(", "), block.trials);
         let (parameter, method, question) = (&block.parameter, &block.method, &block.question);
         let each = match block.rule {

@@ -10,13 +10,19 @@ const TOP: f64 = 34.0;
 const BOTTOM: f64 = 244.0;
 
 /// Draws the scale over the levels, with its 95 % intervals as a band.
-pub(super) fn scale(title: &str, of_scale: &str, of_level: &str, found: &DifferenceScale) -> String {
+pub(super) fn scale(
+    title: &str,
+    of_scale: &str,
+    of_level: &str,
+    found: &DifferenceScale,
+) -> String {
     let mut svg = Svg::new(title, BOTTOM + 40.0);
     let ends = || found.interval.iter().flatten().flatten();
     let all = || found.scale.iter().chain(ends()).copied();
     let (low, high) = (all().fold(0.0, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
     let y = Axis::new(low, high.max(low + 1e-9), BOTTOM, TOP);
-    let [first, last] = [found.levels.first(), found.levels.last()].map(|end| end.copied().unwrap_or(0.0));
+    let [first, last] =
+        [found.levels.first(), found.levels.last()].map(|end| end.copied().unwrap_or(0.0));
     let x = Axis::new(first, last, LEFT, RIGHT);
     for value in &y.ticks {
         let place = y.place(*value);

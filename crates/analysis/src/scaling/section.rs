@@ -49,7 +49,8 @@ impl Writer<'_> {
             format!("{name}: perceived value by {parameter}, with 95 % intervals"),
             format!("{name} : valeur perçue selon {parameter}, avec des intervalles à 95 %"),
         );
-        let axis = language.pick("ψ, standard deviations of a judgement", "ψ, écarts-types d’un jugement");
+        let axis =
+            language.pick("ψ, standard deviations of a judgement", "ψ, écarts-types d’un jugement");
         let svg = figure::scale(&caption, axis, parameter, &found);
         let data = self.perceived_table(name, &caption, &found);
         let highest = found.scale.last().copied().unwrap_or_default();

@@ -14,8 +14,8 @@ use super::latent::ClipEffects;
 use super::levels::{Levels, Observer};
 use super::model::Model;
 use super::panels::RatedPage;
-use super::scaling::Judge;
 use super::person::{BEFORE_REPLAY_MS, Companion, Person, Raw, Showing, as_json};
+use super::scaling::Judge;
 
 /// 5 January 2026, 9:00 UTC: when the first simulated session begins.
 const FIRST_SESSION_MS: f64 = 1_767_603_600_000.0;
@@ -58,8 +58,7 @@ pub(crate) fn events(
     let observer = Observer::new(model.parameters, seed, started.participant);
     let viewer = Viewer::new(model.study, model.parameters, seed, started.participant);
     let judge = Judge::new(model.study, model.parameters, seed, started.participant);
-    let mut walk =
-        Walk { model, seed, person, practice, observer, viewer, judge, page, trial: 0 };
+    let mut walk = Walk { model, seed, person, practice, observer, viewer, judge, page, trial: 0 };
     walk.go();
     Ok(walk.page.events)
 }
@@ -469,9 +468,8 @@ impl Walk<'_, '_> {
         let Some(clip) = self.model.clip(clip) else { return };
         let chosen = self.page.state.record.chosen(&self.page.plan.steps[here]);
         let beside = trial.and_then(|trial| trial.pair(chosen.as_ref()).1);
-        let beside = beside.and_then(|(clip, left)| {
-            Some(Companion { clip: self.model.clip(clip)?, left })
-        });
+        let beside =
+            beside.and_then(|(clip, left)| Some(Companion { clip: self.model.clip(clip)?, left }));
         for question in self.page.plan.steps[here].questions() {
             let record = &self.page.state.record;
             if !question.is_shown(&record.drafts, &record.answers) {

@@ -10,7 +10,9 @@ use mimique_study::{Clip, Exclusions, ShownCourse, Study, component_of};
 
 use crate::trials::column::Column;
 use crate::trials::error::ExportError;
-use crate::trials::export::{Answer, Beside, Export, Person, ShownFace, ShownLevel, Trial, why_left_out};
+use crate::trials::export::{
+    Answer, Beside, Export, Person, ShownFace, ShownLevel, Trial, why_left_out,
+};
 use crate::trials::reason::Reason;
 
 /// Stretches that a file is cut into: more than there are cores, so that none waits long.

@@ -16,9 +16,9 @@
 mod agreement;
 mod allowed;
 mod clock;
+mod drawn_pairs;
 mod effect;
 mod ending;
-mod drawn_pairs;
 mod faces;
 mod gate;
 mod input;

@@ -2,10 +2,10 @@
 
 use mimique_adaptive::{QuestPlus, Staircase};
 
-use super::{Subject, compared, levels};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::sequence::read_block;
+use super::{Subject, compared, levels};
 use crate::closed_loop::{grid, staircase};
 use crate::columns::{LEVEL_COLUMNS, WEIGHTS_EXPECTED_COLUMN};
 use crate::question::QuestionKind;

@@ -79,9 +79,9 @@ fn units(block: &ReverseCorrelationComponent, pointer: &str, issues: &mut Issues
 /// `AU04`, of one side `AU04_L`: whether an avatar shows it is known once the avatar is read.
 fn is_unit(name: &str) -> bool {
     let number = name.strip_suffix("_L").or_else(|| name.strip_suffix("_R")).unwrap_or(name);
-    number
-        .strip_prefix("AU")
-        .is_some_and(|digits| digits.len() == 2 && digits.bytes().all(|digit| digit.is_ascii_digit()))
+    number.strip_prefix("AU").is_some_and(|digits| {
+        digits.len() == 2 && digits.bytes().all(|digit| digit.is_ascii_digit())
+    })
 }
 
 fn questions(

@@ -49,8 +49,7 @@ pub(super) fn examine(
 
 fn question(subject: &Subject<'_>, block: &ScalingComponent, pointer: &str, issues: &mut Issues) {
     let place = below(pointer, "question");
-    let Some(question) =
-        reverse_correlation::shared(subject, &block.question, &place, issues)
+    let Some(question) = reverse_correlation::shared(subject, &block.question, &place, issues)
     else {
         return;
     };

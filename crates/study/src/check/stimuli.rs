@@ -61,7 +61,10 @@ fn needed(subject: &Subject<'_>, issues: &mut Issues) {
     let is_drawn = |block: &Component| matches!(block, Component::ReverseCorrelation(_));
     let mut blocks = study.components.values().filter(|component| component.is_block());
     let stimuli = &study.stimuli;
-    if study.training.is_none() && !blocks.clone().any(|block| !is_drawn(block)) && blocks.any(is_drawn) {
+    if study.training.is_none()
+        && !blocks.clone().any(|block| !is_drawn(block))
+        && blocks.any(is_drawn)
+    {
         return;
     }
     for (key, is_missing) in [

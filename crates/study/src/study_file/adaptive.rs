@@ -3,8 +3,8 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
+use super::json_block::JsonBlock;
 use super::{Clip, ClipEntry, Component, FactorValue, LocalText, MethodEntry, Study};
 
 /// A block of trials whose levels follow the answers. Each trial shows the varied clip and the one that it is held
@@ -170,29 +170,13 @@ impl AdaptiveComponent {
     }
 }
 
-/// An adaptive block as pages carry it: JSON, of which they read a few words and hand on the rest to a module that
-/// studies with such a block alone load. A reader of its own would weigh on every study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct AdaptiveBlock(pub Value);
+/// The block as pages carry it.
+pub type AdaptiveBlock = JsonBlock<AdaptiveComponent>;
 
 impl AdaptiveBlock {
-    /// The block.
-    ///
-    /// # Errors
-    /// What is wrong with it, where nobody has checked the study.
-    pub fn read(&self) -> Result<AdaptiveComponent, serde_json::Error> {
-        AdaptiveComponent::deserialize(&self.0)
-    }
-
     /// Trials, at most, of a projected block.
     pub fn steps(&self) -> u64 {
         self.0["steps"].as_u64().unwrap_or_default()
-    }
-
-    /// The question of every trial.
-    pub fn question(&self) -> &str {
-        self.0["question"].as_str().unwrap_or_default()
     }
 }
 

@@ -13,6 +13,7 @@ mod conduct;
 mod exertion;
 mod general;
 mod hypotheses;
+mod json_block;
 mod languages;
 mod local_text;
 mod media;
@@ -55,6 +56,7 @@ pub use general::{
     Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
 };
 pub use hypotheses::{Exclusions, Generalise, Hypothesis, Measure, StraightLining, TestName};
+pub use json_block::JsonBlock;
 pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
@@ -63,8 +65,8 @@ pub use pairs::{DealtPairs, NoPairs, PairRule, PairSchedule, PairsBlock, PairsCo
 pub use panel::{PanelBlock, PanelComponent, PanelExclusion, PanelPage, PanelPages, answer_about};
 pub use paths::{PathError, WrongVariable, resolve_path};
 pub use reverse_correlation::{ReverseCorrelationBlock, ReverseCorrelationComponent};
-pub use scaling::{ScalingBlock, ScalingComponent, ScalingRule};
 pub use scales::CompositeScale;
+pub use scaling::{ScalingBlock, ScalingComponent, ScalingRule};
 pub use sequence::{
     Beside, BreakComponent, ClipSelection, ClipShowing, Component, Constraint, Interruption,
     OrderRule, PageComponent, Questionnaire, Sequence, SequenceItem, Side, Training,

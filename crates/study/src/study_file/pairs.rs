@@ -3,10 +3,10 @@
 use mimique_adaptive::{Balance, DesignError, PairDesign};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::adaptive::is_none_at_all;
 use super::compared::{Compared, NoCells, method, segment_and_avatar};
+use super::json_block::JsonBlock;
 use super::{
     Clip, ClipSelection, ClipShowing, Component, LocalText, Study, TimeLimit, TrialsComponent,
 };
@@ -106,20 +106,8 @@ pub enum NoPairs {
     Design(#[from] DesignError),
 }
 
-/// A block of pairs as pages carry it: JSON, of which they are sent the trials that it makes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct PairsBlock(pub Value);
-
-impl PairsBlock {
-    /// The block.
-    ///
-    /// # Errors
-    /// What is wrong with it, where nobody has checked the study.
-    pub fn read(&self) -> Result<PairsComponent, serde_json::Error> {
-        PairsComponent::deserialize(&self.0)
-    }
-}
+/// The block as pages carry it.
+pub type PairsBlock = JsonBlock<PairsComponent>;
 
 impl PairsComponent {
     /// Identifiers of the questions of each trial, in the order they are asked.

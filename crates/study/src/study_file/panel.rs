@@ -3,9 +3,9 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::compared::{Compared, NoCells, method, segment_and_avatar};
+use super::json_block::JsonBlock;
 use super::{
     Clip, ClipSelection, ClipShowing, Component, LocalText, Study, TimeLimit, TrialsComponent,
 };
@@ -83,20 +83,8 @@ pub struct PanelPage {
     pub clips: Vec<String>,
 }
 
-/// A block of panels as pages carry it: JSON, of which they are sent the trials that it makes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct PanelBlock(pub Value);
-
-impl PanelBlock {
-    /// The block.
-    ///
-    /// # Errors
-    /// What is wrong with it, where nobody has checked the study.
-    pub fn read(&self) -> Result<PanelComponent, serde_json::Error> {
-        PanelComponent::deserialize(&self.0)
-    }
-}
+/// The block as pages carry it.
+pub type PanelBlock = JsonBlock<PanelComponent>;
 
 impl PanelComponent {
     /// Fewest conditions of a panel.

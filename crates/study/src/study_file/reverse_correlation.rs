@@ -4,8 +4,8 @@
 use mimique_adaptive::TrajectoryDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
+use super::json_block::JsonBlock;
 use super::{Avatar, Clip, Component, LocalText, Study, TimeLimit};
 
 /// A block of dynamic reverse correlation (Yu, Garrod and Schyns 2012; Jack et al. 2012). Nothing but the avatar is
@@ -81,21 +81,10 @@ impl ReverseCorrelationComponent {
     }
 }
 
-/// A block of reverse correlation as pages carry it: JSON, of which they read a few words and hand on the rest to a
-/// module that studies with such a block alone load. A reader of its own would weigh on every study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct ReverseCorrelationBlock(pub Value);
+/// The block as pages carry it.
+pub type ReverseCorrelationBlock = JsonBlock<ReverseCorrelationComponent>;
 
 impl ReverseCorrelationBlock {
-    /// The block.
-    ///
-    /// # Errors
-    /// What is wrong with it, where nobody has checked the study.
-    pub fn read(&self) -> Result<ReverseCorrelationComponent, serde_json::Error> {
-        ReverseCorrelationComponent::deserialize(&self.0)
-    }
-
     /// Trials of each participant.
     pub fn trials(&self) -> u64 {
         self.0["trials"].as_u64().unwrap_or_default()

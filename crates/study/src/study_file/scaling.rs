@@ -3,9 +3,9 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::adaptive::is_none_at_all;
+use super::json_block::JsonBlock;
 use super::{Component, LocalText, Study, TimeLimit};
 
 /// A block of difference scaling. Each trial shows the same segment at three or four levels of a method's parameter, in
@@ -83,26 +83,8 @@ impl ScalingRule {
     }
 }
 
-/// A block of difference scaling as pages carry it: JSON, of which they read a few words. A reader of its own would
-/// weigh on every study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct ScalingBlock(pub Value);
-
-impl ScalingBlock {
-    /// The block.
-    ///
-    /// # Errors
-    /// What is wrong with it, where nobody has checked the study.
-    pub fn read(&self) -> Result<ScalingComponent, serde_json::Error> {
-        ScalingComponent::deserialize(&self.0)
-    }
-
-    /// The question of every trial.
-    pub fn question(&self) -> &str {
-        self.0["question"].as_str().unwrap_or_default()
-    }
-}
+/// The block as pages carry it.
+pub type ScalingBlock = JsonBlock<ScalingComponent>;
 
 impl Study {
     /// The blocks of difference scaling, by name, each with the clips that it shows. What cannot be read is left out:

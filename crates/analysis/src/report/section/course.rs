@@ -70,7 +70,7 @@ impl Writer<'_> {
     pub(crate) fn course_of_the_session(&mut self, measures: &[&Measure]) {
         let language = self.language();
         let last = self.export.trials.iter().filter_map(|trial| trial.order).max().unwrap_or(0);
-        if last < 2 {
+        if last < 2 || measures.is_empty() {
             return;
         }
         self.heading(2, "Course of the session", "Au fil de la session");

@@ -92,8 +92,7 @@ pub(crate) fn write(
         stimuli,
     };
     let asked = export.questions(study).into_iter();
-    let is_apart =
-        |id: &str| study.is_asked_of_drawn_faces(id) || study.is_asked_of_scales(id);
+    let is_apart = |id: &str| study.is_asked_of_drawn_faces(id) || study.is_asked_of_scales(id);
     let asked = asked.filter(|asked| !is_apart(&asked.id));
     let measures: Vec<(AskedQuestion<'_>, Measure)> = asked
         .filter_map(|asked| {

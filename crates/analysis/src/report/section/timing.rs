@@ -19,9 +19,9 @@ impl Writer<'_> {
     /// Response times and late frames.
     pub(crate) fn timing(&mut self) {
         let language = self.language();
-        self.heading(2, "Timing", "Temps");
         let asked = self.export.questions(self.study);
         let Some(first) = self.factors.first().cloned() else { return };
+        self.heading(2, "Timing", "Temps");
         if let Some(asked) = asked.first()
             && let Some(measure) = Measure::response_time(self.export, asked, language)
             && self.of_pair(asked, What::Rt, &first).is_none()
