@@ -5,8 +5,7 @@ const ready = init();
 // The block of the last call, and the answers that it has taken in.
 let known = null;
 
-/** The next level of a block: what the session's effect asks for in (JSON), its event and the clips that may come
-    next out (JSON). */
+/** The next level of a block: what the session's effect asks for in (JSON), its event out (JSON). */
 export async function nextLevel(text) {
   await ready;
   const { step, answers, ...request } = JSON.parse(text);
@@ -20,4 +19,9 @@ export async function nextLevel(text) {
     known.answers.push(answer);
   }
   return known.levels.next(step);
+}
+
+/** The clips that may come after either answer to that level. */
+export function levelsAhead() {
+  return known?.levels.ahead() ?? [];
 }

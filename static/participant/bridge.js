@@ -292,6 +292,12 @@ export function nextLevel(request) {
   );
 }
 
+/** The clips that may come after the level that was chosen last. */
+export async function levelsAhead() {
+  const { levelsAhead } = await import("../adaptive/levels.js");
+  return JSON.stringify(levelsAhead());
+}
+
 /** The next batch of pairs of an active schedule: scripts of studies with such a schedule alone. What did not arrive is
     asked for again. */
 export function drawPairs(request) {

@@ -49,19 +49,24 @@ try {
     await cdp.send("Emulation.setCPUThrottlingRate", { rate: slowed });
     for (const [name, block] of Object.entries(blocks)) {
       const figures = await page.evaluate(async (block) => {
-        const { nextLevel } = await import("/adaptive/levels.js");
+        const { nextLevel, levelsAhead } = await import("/adaptive/levels.js");
         const answers = [];
         const times = [];
+        const ahead = [];
         for (let trial = 1; trial <= 40; trial++) {
           const request = JSON.stringify({ step: `limit/${trial}`, component: "limit", block, seed: 7, configHash: "h", slot: 1, answers });
           const start = performance.now();
-          const { event } = JSON.parse(await nextLevel(request));
+          const event = JSON.parse(await nextLevel(request));
           times.push(performance.now() - start);
+          const then = performance.now();
+          levelsAhead();
+          ahead.push(performance.now() - then);
           answers.push(event.level > 0.5 === event.left ? "right" : "left");
         }
         const [first, ...rest] = times;
         rest.sort((a, b) => a - b);
-        return { first_ms: first, median_ms: rest[19], longest_ms: rest[38] };
+        ahead.sort((a, b) => a - b);
+        return { first_ms: first, median_ms: rest[19], longest_ms: rest[38], ahead_median_ms: ahead[20], ahead_longest_ms: ahead[39] };
       }, block);
       console.log(JSON.stringify({ block: name, slowed, ...figures }));
     }

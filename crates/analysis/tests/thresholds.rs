@@ -98,3 +98,43 @@ fn choices_of_an_adaptive_block_are_not_counted_by_level() {
         .collect();
     assert!(!figures.is_empty(), "tracks and curves are drawn");
 }
+
+#[test]
+fn thresholds_of_levels_that_fall_are_found_again() {
+    let file = include_str!("../../../study-config/jnd-alpha.json");
+    let mut value = mimique_study::parse(file).unwrap();
+    let block = &mut value["components"]["limit"];
+    block["vary"] =
+        serde_json::json!({ "parameter": "lowpassHz", "from": 12, "to": 2, "levels": 21 });
+    block["rule"]["questPlus"] =
+        serde_json::json!({ "threshold": [2.5, 11.5, 19], "spread": [0.5, 1.0, 2.0] });
+    let study = Study::from_value(&value).unwrap();
+    let mut parameters = careful(&study);
+    let own = parameters.discrimination.get_mut("limit").unwrap();
+    (own.threshold, own.person_sd, own.spread) = (5.0, 0.0, 0.8);
+    let simulation = Simulation::new(&study, "hash", &parameters, 5).unwrap();
+    let csv = simulated_export(&simulation, &study, PEOPLE);
+    let (written, results) = report(&study, &csv, Language::English);
+    let block = &results["thresholds"][0];
+    assert_eq!(
+        (&block["falls"], &block["levels"]),
+        (&true.into(), &serde_json::json!([2.0, 12.0]))
+    );
+    let mean = block["mean"]["mean"].as_f64().unwrap();
+    assert!((mean - 5.0).abs() < 0.6, "{mean}");
+    for person in block["people"].as_array().unwrap() {
+        let ends = [0, 1].map(|end| person["interval"][end].as_f64().unwrap());
+        assert!(ends[0] < ends[1], "{ends:?}");
+    }
+    // Nobody sees even the lowest low-pass.
+    own_threshold(&mut parameters, -20.0);
+    let simulation = Simulation::new(&study, "hash", &parameters, 5).unwrap();
+    let csv = simulated_export(&simulation, &study, PEOPLE);
+    let (unseen, _) = report(&study, &csv, Language::English);
+    assert!(text(&unseen, "report.md").contains("below 2"), "{}", text(&unseen, "report.md"));
+    assert!(!text(&written, "report.md").contains("below 2 |"));
+}
+
+fn own_threshold(parameters: &mut mimique_analysis::Parameters, threshold: f64) {
+    parameters.discrimination.get_mut("limit").unwrap().threshold = threshold;
+}

@@ -77,7 +77,7 @@ impl Page {
                         let ready = |clip| Input::ClipPrepared { clip };
                         inputs.extend(clips.into_iter().map(ready));
                     }
-                    Effect::ChooseLevel(request) => inputs.push(chosen(&request)),
+                    Effect::ChooseLevel(request) => inputs.extend(chosen(&request)),
                     Effect::Flush => {
                         inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
                     }
@@ -114,8 +114,9 @@ impl Page {
     }
 }
 
-/// What the module of the page does, without anything kept between its calls.
-fn chosen(request: &Value) -> Input {
+/// What the module of the page does, without anything kept between its calls: the level, which is taken in first, and
+/// what may come after it.
+fn chosen(request: &Value) -> [Input; 2] {
     let block = AdaptiveComponent::deserialize(&request["block"]).expect("a block");
     let draw = Draw {
         seed: request["seed"].as_u64().unwrap(),
@@ -138,7 +139,7 @@ fn chosen(request: &Value) -> Input {
         None => json!({ "type": "levels_over", "step": request["step"] }),
     };
     let after = ["left", "right"].map(|side| closed_loop.after(side).clips());
-    Input::LevelChosen { event, ahead: after.concat() }
+    [Input::LevelsAhead(after.concat()), Input::LevelChosen(event)]
 }
 
 fn run(study: &Study, sees_from: f64) -> Page {

@@ -75,7 +75,7 @@ pub struct ClosedLoop {
     levels: Vec<f64>,
 }
 
-/// The grid of QUEST+ of a block.
+/// The grid of QUEST+ of a block, its levels and thresholds by [`Varied::ease`].
 pub fn grid(rule: &QuestPlusRule, vary: &Varied) -> Grid {
     let [low, high, count] = rule.threshold;
     let count = count.clamp(0.0, 1e5) as u32;
@@ -85,21 +85,23 @@ pub fn grid(rule: &QuestPlusRule, vary: &Varied) -> Grid {
         PsychometricFunction::Logistic => Shape::Logistic,
         PsychometricFunction::Weibull => Shape::Weibull,
     };
+    let mut thresholds: Vec<f64> = threshold.all().iter().map(|own| vary.ease(*own)).collect();
+    thresholds.sort_by(f64::total_cmp);
     Grid {
         shape,
-        levels: vary.all(),
-        values: [threshold.all(), rule.spread.clone(), vec![GUESS], rule.lapse.clone()],
+        levels: vary.all().iter().map(|level| vary.ease(*level)).collect(),
+        values: [thresholds, rule.spread.clone(), vec![GUESS], rule.lapse.clone()],
         prior: [const { None }; 4],
     }
 }
 
-/// The rules of the staircase of a block.
+/// The rules of the staircase of a block, by [`Varied::ease`].
 pub fn staircase(rule: &StaircaseRule, vary: &Varied) -> StaircaseRules {
     StaircaseRules {
         down: rule.down,
-        start: rule.start.unwrap_or(vary.to),
+        start: vary.ease(rule.start.unwrap_or(vary.to)),
         steps: rule.steps.clone(),
-        bounds: [vary.from, vary.to],
+        bounds: [vary.ease(vary.from), vary.ease(vary.to)],
     }
 }
 
@@ -138,7 +140,7 @@ impl ClosedLoop {
         let (level, entropy) = match planned.catch {
             true => (self.block.vary.to, None),
             // A level of a staircase is one of the list, whatever its sums round to.
-            false => (self.nearest(next.level), next.entropy),
+            false => (self.nearest(self.block.vary.ease(next.level)), next.entropy),
         };
         Some(ChosenLevel {
             track: planned.track + 1,
@@ -197,7 +199,10 @@ impl ClosedLoop {
     /// Mean and standard deviation of a track's threshold (from 1) under the answers so far; none of a staircase.
     pub fn threshold(&self, track: usize) -> Option<[f64; 2]> {
         match self.tracks.get(track.checked_sub(1)?)?.rule() {
-            Rule::QuestPlus(track) => Some(track.moments()[0]),
+            Rule::QuestPlus(track) => {
+                let [mean, sd] = track.moments()[0];
+                Some([self.block.vary.ease(mean), sd])
+            }
             Rule::Staircase(_) => None,
         }
     }
@@ -229,4 +234,48 @@ fn plan(block: &AdaptiveComponent, component: &str, draw: Draw<'_>) -> Vec<Plann
     }
     let parts = order.into_iter().zip(left).zip(segments);
     parts.map(|(((track, catch), left), segment)| Planned { track, catch, segment, left }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// A block whose levels rise from 0 to 1, or fall from 1 to 0.
+    fn block(falls: bool, rule: &serde_json::Value) -> AdaptiveComponent {
+        let (from, to) = if falls { (1.0, 0.0) } else { (0.0, 1.0) };
+        serde_json::from_value(json!({
+            "vary": { "parameter": "alpha", "from": from, "to": to, "levels": 11 },
+            "method": "lsts", "against": "none", "question": "which", "trials": 60, "rule": rule,
+            "shown": [{ "levels": "joy.lsts@alpha=", "against": "joy.none" }]
+        }))
+        .unwrap()
+    }
+
+    #[test]
+    fn levels_that_fall_go_as_those_that_rise() {
+        for rule in [
+            json!({ "questPlus": { "threshold": [0.1, 0.9, 9], "spread": [0.05, 0.2] } }),
+            json!({ "staircase": { "down": 2, "steps": [0.2, 0.1] } }),
+        ] {
+            let draw = Draw { seed: 1, config_hash: "c", participant: 1, condition: None };
+            let of = |falls| ClosedLoop::new(block(falls, &rule), "limit", draw).unwrap();
+            let (mut rises, mut falls) = (of(false), of(true));
+            while let Some(up) = rises.next() {
+                let down = falls.next().unwrap();
+                assert!((up.level + down.level - 1.0).abs() < 1e-12, "{up:?} {down:?}");
+                assert_eq!((up.left, up.track), (down.left, down.track));
+                // This person tells levels above 0.4, and those below 0.6.
+                let is_told = up.level > 0.4;
+                let side = if is_told == up.left { "right" } else { "left" };
+                rises.answer(Some(side));
+                falls.answer(Some(side));
+            }
+            assert_eq!(falls.next(), None);
+            if let (Some([up, sd]), Some([down, same])) = (rises.threshold(1), falls.threshold(1)) {
+                assert!((up + down - 1.0).abs() < 1e-9 && (sd - same).abs() < 1e-9, "{up} {down}");
+            }
+        }
+    }
 }

@@ -94,7 +94,7 @@ pub const LEVEL_COLUMNS: [(&str, ColumnKind, &str, &str); 6] = {
             "level_catch",
             Boolean,
             "",
-            "Whether it is a catch trial: at the highest level, and no track counts it",
+            "Whether it is a catch trial: at the easiest level, and no track counts it",
         ),
         (
             "posterior_mean",

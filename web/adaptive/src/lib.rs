@@ -4,7 +4,8 @@
 //! ```js
 //! const levels = new Levels(JSON.stringify(request)); // what the session's effect ChooseLevel holds
 //! levels.answer("left");                              // one answer after the other; undefined where there was none
-//! JSON.parse(levels.next("limit/2"));                 // {event: {type: "level_chosen", ...}, ahead: [clip, ...]}
+//! JSON.parse(levels.next("limit/2"));                 // {type: "level_chosen", ...}
+//! levels.ahead();                                     // ["joy3.lsts@alpha=0.4", ...], either of which may come next
 //! ```
 //!
 //! And the faces of blocks of reverse correlation:
@@ -86,19 +87,22 @@ impl Levels {
         }
     }
 
-    /// The event of the trial of a step, and the clips that may come after either answer, as JSON.
-    pub fn next(&mut self, step: &str) -> String {
+    /// The event of the trial of a step, as JSON.
+    pub fn next(&self, step: &str) -> String {
         let Some(chosen) = self.closed_loop.next() else {
-            let event = json!({ "type": "levels_over", "step": step });
-            return json!({ "event": event, "ahead": [] }).to_string();
+            return json!({ "type": "levels_over", "step": step }).to_string();
         };
         let mut event = serde_json::to_value(chosen).unwrap_or_default();
         event["type"] = Value::from("level_chosen");
         event["step"] = Value::from(step);
+        event.to_string()
+    }
+
+    /// The clips that may come after either answer; the level that comes then is known when it is asked for.
+    pub fn ahead(&mut self) -> Vec<String> {
         let closed_loop = &self.closed_loop;
         let after = self.after.get_or_insert_with(|| SIDES.map(|side| closed_loop.after(side)));
-        let ahead: Vec<String> = after.iter().flat_map(ClosedLoop::clips).collect();
-        json!({ "event": event, "ahead": ahead }).to_string()
+        after.iter().flat_map(ClosedLoop::clips).collect()
     }
 }
 

@@ -1,4 +1,5 @@
-//! How simulated people answer adaptive blocks: a cumulative normal of the level around each person's threshold. The
+//! How simulated people answer adaptive blocks: a cumulative normal of the level (or of minus the level, where levels
+//! fall) around each person's threshold. The
 //! levels are chosen as the page has them chosen.
 
 use std::collections::HashMap;
@@ -6,7 +7,7 @@ use std::collections::HashMap;
 use mimique_adaptive::{Psychometric, Shape};
 use mimique_session::LevelShown;
 use mimique_session::flow::Input;
-use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study, component_of};
+use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study, Varied, component_of};
 use serde::Deserialize as _;
 use serde_json::{Value, json};
 
@@ -19,9 +20,9 @@ const GUESS: f64 = 0.5;
 /// The thresholds of a study's adaptive blocks, if nothing else is said: in the middle of the levels.
 pub(super) fn defaults(study: &Study) -> std::collections::BTreeMap<String, Discrimination> {
     let of = |(name, block): (&str, AdaptiveComponent)| {
-        let width = block.vary.to - block.vary.from;
+        let width = (block.vary.to - block.vary.from).abs();
         let discrimination = Discrimination {
-            threshold: block.vary.from + 0.5 * width,
+            threshold: (block.vary.from + block.vary.to) / 2.0,
             person_sd: 0.12 * width,
             spread: 0.15 * width,
             lapse: 0.02,
@@ -69,39 +70,41 @@ impl Levels {
             }
             None => json!({ "type": "levels_over", "step": step }),
         };
-        Some(Input::LevelChosen { event, ahead: Vec::new() })
+        Some(Input::LevelChosen(event))
     }
 }
 
 /// How one person tells the levels of each block.
 pub(super) struct Observer {
-    functions: HashMap<String, Psychometric>,
+    /// The function of each block, of [`Varied::ease`].
+    functions: HashMap<String, (Varied, Psychometric)>,
     draws: Draws,
 }
 
 impl Observer {
     /// The person of a number.
-    pub(super) fn new(parameters: &Parameters, seed: u64, number: u64) -> Self {
-        let of = |(name, given): (&String, &Discrimination)| {
+    pub(super) fn new(study: &Study, parameters: &Parameters, seed: u64, number: u64) -> Self {
+        let of = |(name, block): (&str, AdaptiveComponent)| {
+            let given: &Discrimination = parameters.discrimination.get(name)?;
             let purpose = format!("threshold/{name}");
             let own = Draws::new(seed, Some(number), &purpose).normal();
             let function = Psychometric {
                 shape: Shape::Normal,
-                location: given.threshold + given.person_sd * own,
+                location: block.vary.ease(given.threshold + given.person_sd * own),
                 spread: given.spread,
                 guess: GUESS,
                 lapse: given.lapse,
             };
-            (name.clone(), function)
+            Some((name.to_owned(), (block.vary, function)))
         };
-        let functions = parameters.discrimination.iter().map(of).collect();
+        let functions = study.adaptive().filter_map(of).collect();
         Self { functions, draws: Draws::new(seed, Some(number), "levels") }
     }
 
     /// The side that is answered; none for a block that the parameters do not know.
     pub(super) fn answer(&mut self, shown: &LevelShown, careless: bool) -> Option<&'static str> {
-        let function = self.functions.get(component_of(&shown.step))?;
-        let right = if careless { GUESS } else { function.right(shown.level) };
+        let (vary, function) = self.functions.get(component_of(&shown.step))?;
+        let right = if careless { GUESS } else { function.right(vary.ease(shown.level)) };
         let is_right = self.draws.happens(right);
         // The varied clip stands where the other one does not.
         Some(if is_right == shown.left { "right" } else { "left" })

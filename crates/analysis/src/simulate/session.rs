@@ -55,7 +55,7 @@ pub(crate) fn events(
     let state = State::new(&plan, model.study.default_language());
     let levels = Levels::default();
     let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels };
-    let observer = Observer::new(model.parameters, seed, started.participant);
+    let observer = Observer::new(model.study, model.parameters, seed, started.participant);
     let viewer = Viewer::new(model.study, model.parameters, seed, started.participant);
     let judge = Judge::new(model.study, model.parameters, seed, started.participant);
     let mut walk = Walk { model, seed, person, practice, observer, viewer, judge, page, trial: 0 };

@@ -2,7 +2,9 @@
 
 use mimique_stats::PsychometricFit;
 
-use super::{ShownAnswer, counts};
+use mimique_study::Varied;
+
+use super::{ShownAnswer, counts, ends};
 use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH};
 
 const LEFT: f64 = 52.0;
@@ -26,8 +28,9 @@ pub(super) fn curve_and_track(
     words: &FigureWords,
     shown: &[ShownAnswer],
     fit: Option<&PsychometricFit>,
-    [from, to]: [f64; 2],
+    vary: &Varied,
 ) -> String {
+    let [from, to] = ends(vary);
     let mut svg = Svg::new(&words.title, 2.0 * (PANEL + GAP) + 24.0);
     let (top, bottom) = (GAP - 14.0, GAP - 14.0 + PANEL);
     let level = Axis::new(from, to, bottom, top);
@@ -59,14 +62,16 @@ pub(super) fn curve_and_track(
         let function = fit.psychometric();
         let at = |point: usize| from + (to - from) * point as f64 / POINTS as f64;
         let points: Vec<[f64; 2]> = (0..=POINTS)
-            .map(|point| [across.place(at(point)), share.place(function.right(at(point)))])
+            .map(|point| {
+                [across.place(at(point)), share.place(function.right(vary.ease(at(point))))]
+            })
             .collect();
         svg.path(&points, "course");
     }
-    for own in counts(shown) {
+    for own in counts(shown, vary) {
         let radius = 1.5 + (own.n as f64).sqrt();
         let right = own.correct as f64 / own.n as f64;
-        svg.circle(across.place(own.level), share.place(right), radius.min(8.0), "dot");
+        svg.circle(across.place(vary.ease(own.level)), share.place(right), radius.min(8.0), "dot");
     }
     foot(&mut svg, &across, bottom, &words.level);
     svg.finish()

@@ -8,7 +8,7 @@ use mimique_stats::{
     Description, Lapse, LevelCount, Outcome, PsychometricFit, PsychometricOptions,
     bootstrap_through, describe, psychometric,
 };
-use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, PsychometricFunction, Study};
+use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, PsychometricFunction, Study, Varied};
 use serde::Serialize;
 
 use crate::trials::export::{Answer, Export, ShownLevel};
@@ -27,9 +27,16 @@ pub(crate) struct BlockThresholds {
     pub parameter: String,
     /// Its lowest and highest level.
     pub levels: [f64; 2],
+    /// Whether levels fall from the hardest to the easiest: fitted functions are then of minus the level.
+    #[serde(skip_serializing_if = "is_false")]
+    pub falls: bool,
     pub people: Vec<PersonThreshold>,
     /// Mean of the thresholds that lie within the levels, with its t interval.
     pub mean: Outcome<Description>,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// What the answers of one person give.
@@ -99,8 +106,9 @@ pub(crate) fn thresholds(export: &Export, study: &Study) -> Vec<BlockThresholds>
         });
         let mean = describe(&found.collect::<Vec<f64>>());
         let parameter = block.vary.parameter.clone();
-        let levels = [block.vary.from, block.vary.to];
-        BlockThresholds { block: name.to_owned(), parameter, levels, people, mean }
+        let levels = ends(&block.vary);
+        let falls = block.vary.from > block.vary.to;
+        BlockThresholds { block: name.to_owned(), parameter, levels, falls, people, mean }
     };
     let all = study.adaptive().map(of);
     all.filter(|block| !block.people.is_empty()).collect()
@@ -133,7 +141,7 @@ fn of_person(
         }
     }
     let is_replayed = answers.iter().all(|(_, level)| level.replayed);
-    let counts = counts(&shown);
+    let counts = counts(&shown, &block.vary);
     let options = options(block);
     let fit = psychometric(&counts, &options).ok();
     let (threshold, fit) = match fit {
@@ -145,25 +153,34 @@ fn of_person(
     let interval = fit.as_ref().and_then(|fit| {
         let tracks = tracks(name, block)?;
         let drawn = bootstrap_through(&tracks, &options, &fit.psychometric(), ROUNDS, seed)?;
-        Some(drawn.level_at_half)
+        Some(ascending(drawn.level_at_half.map(|ease| block.vary.ease(ease))))
     });
     let participant = participant.to_owned();
     let answers = shown.len();
     PersonThreshold { participant, answers, catches, threshold, interval, fit, shown }
 }
 
-/// Answers level by level.
-pub(super) fn counts(shown: &[ShownAnswer]) -> Vec<LevelCount> {
+/// Answers level by level, by [`Varied::ease`].
+pub(super) fn counts(shown: &[ShownAnswer], vary: &Varied) -> Vec<LevelCount> {
     let mut counts: Vec<LevelCount> = Vec::new();
     for answer in shown {
-        let right = u64::from(answer.right);
-        match counts.iter_mut().find(|own| own.level == answer.level) {
+        let (level, right) = (vary.ease(answer.level), u64::from(answer.right));
+        match counts.iter_mut().find(|own| own.level == level) {
             Some(own) => (own.n, own.correct) = (own.n + 1, own.correct + right),
-            None => counts.push(LevelCount { level: answer.level, n: 1, correct: right }),
+            None => counts.push(LevelCount { level, n: 1, correct: right }),
         }
     }
     counts.sort_by(|one, other| one.level.total_cmp(&other.level));
     counts
+}
+
+fn ascending([one, other]: [f64; 2]) -> [f64; 2] {
+    [one.min(other), one.max(other)]
+}
+
+/// The lowest and the highest level.
+pub(super) fn ends(vary: &Varied) -> [f64; 2] {
+    ascending([vary.from, vary.to])
 }
 
 fn options(block: &AdaptiveComponent) -> PsychometricOptions {
@@ -176,19 +193,20 @@ fn options(block: &AdaptiveComponent) -> PsychometricOptions {
     PsychometricOptions { shape, guess: GUESS, lapse: Lapse::Free }
 }
 
-fn placed(level: f64, block: &AdaptiveComponent) -> Threshold {
-    let (from, to) = (block.vary.from, block.vary.to);
-    if level > to {
-        Threshold::Above(to)
-    } else if level < from {
-        Threshold::Below(from)
+/// Where a level lies, by [`Varied::ease`].
+fn placed(ease: f64, block: &AdaptiveComponent) -> Threshold {
+    let (level, [lowest, highest]) = (block.vary.ease(ease), ends(&block.vary));
+    if level > highest {
+        Threshold::Above(highest)
+    } else if level < lowest {
+        Threshold::Below(lowest)
     } else {
         Threshold::At(level)
     }
 }
 
 /// Where the threshold lies if no function has a finite maximum: answers that are mostly right everywhere put it
-/// below the levels, answers by chance everywhere above them, and a step between two of them.
+/// before the hardest level, answers by chance everywhere behind the easiest, and a step between two of them.
 fn without_fit(counts: &[LevelCount], block: &AdaptiveComponent) -> Threshold {
     let share = |own: &LevelCount| own.correct as f64 / own.n as f64;
     let half = 0.5 * (1.0 + GUESS);
@@ -197,10 +215,11 @@ fn without_fit(counts: &[LevelCount], block: &AdaptiveComponent) -> Threshold {
         counts.iter().fold((0, 0), |(n, right), own| (n + own.n, right + own.correct));
     let first = counts.iter().position(|own| right(&own));
     match first {
-        None => Threshold::Above(block.vary.to),
-        Some(0) if all.1 as f64 > half * all.0 as f64 => Threshold::Below(block.vary.from),
+        None => placed(f64::INFINITY, block),
+        Some(0) if all.1 as f64 > half * all.0 as f64 => placed(f64::NEG_INFINITY, block),
         Some(at) if at > 0 && counts[at..].iter().all(|own| right(&own)) => {
-            Threshold::Between([counts[at - 1].level, counts[at].level])
+            let step = [counts[at - 1].level, counts[at].level];
+            Threshold::Between(ascending(step.map(|ease| block.vary.ease(ease))))
         }
         Some(_) => Threshold::Unknown,
     }

@@ -153,8 +153,7 @@ impl Writer<'_> {
             trial: language.pick("trial", "essai"),
             share: language.pick("share right", "proportion juste"),
         };
-        let range = [own.vary.from, own.vary.to];
-        let svg = curve_and_track(&words, &person.shown, person.fit.as_ref(), range);
+        let svg = curve_and_track(&words, &person.shown, person.fit.as_ref(), &own.vary);
         let columns = language.pick(["track", "level", "right"], ["suite", "niveau", "juste"]);
         let id = format!("{}-track-{}", slug(&block.block), slug(who));
         let mut data = DataTable::new(format!("{id}-data"), &caption, columns);

@@ -107,13 +107,11 @@ pub enum Input {
     Distance(Option<f64>),
     /// The sound check was gone through: its outcome is the answer `sound_check`, and what was counted stands beside it.
     SoundChecked(Answers),
-    /// The level of the trial on the screen: its event, and the clips that may come next.
-    LevelChosen {
-        /// Body of [`crate::EventKind::LevelChosen`] or [`crate::EventKind::LevelsOver`].
-        event: Value,
-        /// Clips that may come after either answer.
-        ahead: Vec<String>,
-    },
+    /// The level of the trial on the screen: body of [`crate::EventKind::LevelChosen`] or
+    /// [`crate::EventKind::LevelsOver`].
+    LevelChosen(Value),
+    /// The clips that may come after either answer to that level.
+    LevelsAhead(Vec<String>),
     /// The next batch of pairs: body of [`crate::EventKind::PairsDrawn`].
     PairsDrawn(Value),
     /// The button that gives more time.
@@ -170,7 +168,8 @@ impl Input {
             Self::NoCard => "no_card",
             Self::Distance(_) => "distance",
             Self::SoundChecked(_) => "sound_checked",
-            Self::LevelChosen { .. } => "level_chosen",
+            Self::LevelChosen(_) => "level_chosen",
+            Self::LevelsAhead(_) => "levels_ahead",
             Self::PairsDrawn(_) => "pairs_drawn",
             Self::ExtendTime => "extend_time",
             Self::Tick => "tick",

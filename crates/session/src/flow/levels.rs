@@ -4,6 +4,7 @@
 use serde_json::{Value, json};
 
 use super::effect::Effect;
+use super::needs::needs_now;
 use super::update::Transition;
 use crate::event::EventKind;
 use mimique_study::{Component, component_of};
@@ -36,8 +37,19 @@ impl Transition<'_> {
         })));
     }
 
+    /// The clips that may come next are made ready after those of the level on the screen. Who has gone on meanwhile
+    /// needs them no more.
+    pub(super) fn levels_ahead(&mut self, ahead: &[String]) -> bool {
+        if let Some(step) = self.step().filter(|_| self.state.record.attempt.level.is_some()) {
+            let mut clips = needs_now(step, &self.state);
+            clips.extend_from_slice(ahead);
+            self.effects.push(Effect::PrepareClips(clips));
+        }
+        true
+    }
+
     /// The level of the trial on the screen, or word that none is left.
-    pub(super) fn level_chosen(&mut self, event: &Value, ahead: &[String]) -> bool {
+    pub(super) fn level_chosen(&mut self, event: &Value) -> bool {
         let Some(event) = EventKind::from_body(event) else { return false };
         if self.step().is_none_or(|here| event.step() != Some(&here.id)) {
             return false;
@@ -49,9 +61,8 @@ impl Transition<'_> {
                 return true;
             }
             EventKind::LevelChosen { clip, against, .. } => {
-                let mut clips = vec![clip.clone(), against.clone()];
-                clips.extend_from_slice(ahead);
-                // After a reload the level is known: only what may come next is new.
+                let clips = vec![clip.clone(), against.clone()];
+                // After a reload the level is known.
                 if self.state.record.attempt.level.is_none() {
                     self.record(event);
                 }

@@ -107,7 +107,8 @@ impl<'a> Transition<'a> {
             Input::NoCard => self.no_card(),
             Input::Distance(centimetres) => self.distance(*centimetres),
             Input::SoundChecked(answers) => self.sound_checked(answers),
-            Input::LevelChosen { event, ahead } => self.level_chosen(event, ahead),
+            Input::LevelChosen(event) => self.level_chosen(event),
+            Input::LevelsAhead(clips) => self.levels_ahead(clips),
             Input::PairsDrawn(event) => self.pairs_drawn(event),
             Input::ExtendTime => self.extend_time(),
         }

@@ -9,7 +9,7 @@ use super::{Subject, compared, levels};
 use crate::closed_loop::{grid, staircase};
 use crate::columns::{LEVEL_COLUMNS, WEIGHTS_EXPECTED_COLUMN};
 use crate::question::QuestionKind;
-use crate::study_file::{AdaptiveBlock, AdaptiveComponent, Varied};
+use crate::study_file::{AdaptiveBlock, AdaptiveComponent, PsychometricFunction, Varied};
 
 /// Most levels of a block: each is solved before the study is served.
 const MOST_LEVELS: f64 = 201.0;
@@ -19,7 +19,7 @@ const MOST_CLIPS: usize = 1000;
 const MOST_TRIALS: f64 = 1000.0;
 const MOST_TRACKS: f64 = 8.0;
 
-/// The higher a low-pass, the less it can be seen: no rule goes that way yet.
+/// The higher a low-pass, the less it can be seen.
 const FALLS: &str = "lowpassHz";
 
 pub(super) fn examine(
@@ -34,10 +34,14 @@ pub(super) fn examine(
     let named = [("method", &block.method), ("against", &block.against)];
     let parameter = (block.vary.parameter.as_str(), "vary/parameter");
     levels::names(subject, &named, (&block.avatar, &block.segments), parameter, pointer, issues);
-    if block.vary.parameter == FALLS {
+    let falls = block.vary.from > block.vary.to;
+    if block.vary.parameter == FALLS && !falls {
         let parameter = block.vary.parameter.clone();
-        let place = below(&below(pointer, "vary"), "parameter");
-        issues.error(place, Problem::NotVaried { parameter });
+        issues.error(below(pointer, "vary"), Problem::LevelsRise { parameter });
+    }
+    let function = block.rule.quest_plus.as_ref().map(|rule| rule.function);
+    if falls && function == Some(PsychometricFunction::Weibull) {
+        issues.error(below(pointer, "rule"), Problem::WeibullFalls);
     }
     let columns: Vec<_> = LEVEL_COLUMNS.into_iter().chain([WEIGHTS_EXPECTED_COLUMN]).collect();
     compared::columns(subject, &columns, pointer, issues);
@@ -61,8 +65,8 @@ fn ranges(block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
     range("catch", block.catch, "of the trials", 0.0, 0.5);
     range("vary/levels", f64::from(block.vary.levels), "levels", 3.0, MOST_LEVELS);
     let Varied { from, to, .. } = block.vary;
-    if from >= to {
-        issues.error(below(pointer, "vary"), Problem::LevelsFall { from, to });
+    if from == to {
+        issues.error(below(pointer, "vary"), Problem::OneLevel { level: from });
     }
     if let Some(stop) = block.stop_sd {
         if block.rule.staircase.is_some() {

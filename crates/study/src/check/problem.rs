@@ -413,8 +413,7 @@ ComponentName { name: String }: "bad-id", "\"{name}\" cannot be the name of a co
 BreakSeconds { seconds: f64 }: "out-of-range", "a break of {seconds} s", "take 0 to 3600";
 NeverShown { component: String }: "unused",
     "component \"{component}\" is never shown", "name it in /sequence, or remove it";
-LevelsFall { from: f64, to: f64 }: "bad-range", "levels from {from} to {to}",
-    "write the lower level first: the higher a level, the more easily it must be told from the other clip";
+OneLevel { level: f64 }: "bad-range", "all levels are {level}", "let \"from\" and \"to\" differ";
 StopOfStaircase: "adaptive", "a staircase has no posterior whose standard deviation could stop it",
     "remove it, or take \"questPlus\"";
 StopNotPositive { stop: f64 }: "out-of-range", "a standard deviation of {stop}", "write a number above 0";
@@ -422,8 +421,11 @@ LevelsOfVideos: "adaptive", "the avatar is shown by videos, of which no level ca
     "name an avatar that is drawn";
 LevelsWithSound: "adaptive", "the study has sounds, with which levels are not combined",
     "remove /stimuli/sounds, or this block";
-NotVaried { parameter: String }: "adaptive", "\"{parameter}\" cannot be varied by answers",
-    "vary a number among the method's parameters, such as \"alpha\" or \"gain\"";
+LevelsRise { parameter: String }: "adaptive",
+    "the higher \"{parameter}\", the less is seen of it, and levels go from the hardest to the easiest",
+    "write the highest level as \"from\" and the lowest as \"to\"";
+WeibullFalls: "adaptive", "a Weibull function rises from 0, and these levels fall",
+    "take the function \"normal\" or \"logistic\"";
 NotTwoSides { question: String }: "adaptive",
     "\"{question}\" does not say left or right in every trial",
     "name a question of type \"comparison\", required, without \"allowSame\", \"showIf\" and \"attentionCheck\"";

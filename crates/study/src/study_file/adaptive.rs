@@ -12,7 +12,7 @@ use super::{Clip, ClipEntry, Component, FactorValue, LocalText, MethodEntry, Stu
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct AdaptiveComponent {
-    /// What is varied: the higher the level, the more easily the clip must be told from the other.
+    /// What is varied: the nearer the level is to `to`, the more easily the clip must be told from the other.
     pub vary: Varied,
     /// Key of `stimuli.methods`: the method whose parameter is varied.
     pub method: String,
@@ -35,7 +35,7 @@ pub struct AdaptiveComponent {
     /// Tracks that are mixed, each with levels of its own.
     #[serde(default = "one")]
     pub tracks: u32,
-    /// Further trials at the highest level that no track counts, as a share of all tracks' trials: they show who
+    /// Further trials at the easiest level that no track counts, as a share of all tracks' trials: they show who
     /// does not look.
     #[serde(default)]
     pub catch: f64,
@@ -77,9 +77,9 @@ pub struct ShownSegment {
 pub struct Varied {
     /// A number among the method's parameters: `alpha`, `gain`.
     pub parameter: String,
-    /// Lowest level.
+    /// The level that is hardest to tell from the other clip.
     pub from: f64,
-    /// Highest level.
+    /// The level that is easiest to tell, above or below it.
     pub to: f64,
     /// How many levels there are, equally far from each other.
     pub levels: u32,
@@ -134,7 +134,7 @@ pub struct StaircaseRule {
     pub down: u32,
     /// Steps in the unit of the parameter: the first until the first reversal, then the next, the last for good.
     pub steps: Vec<f64>,
-    /// First level; the highest if not given.
+    /// First level; the easiest if not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
 }
@@ -148,7 +148,13 @@ fn one_lapse() -> Vec<f64> {
 }
 
 impl Varied {
-    /// The levels, ascending.
+    /// How easily a level is told, as a number that rises with it: the level, or minus the level where levels fall
+    /// from the hardest to the easiest. The same takes such a number back to its level.
+    pub fn ease(&self, level: f64) -> f64 {
+        if self.from <= self.to { level } else { -level }
+    }
+
+    /// The levels, from the hardest to the easiest.
     pub fn all(&self) -> Vec<f64> {
         let steps = f64::from(self.levels.saturating_sub(1).max(1));
         let level = |step: u32| self.from + (self.to - self.from) * f64::from(step) / steps;

@@ -85,10 +85,13 @@ extern "C" {
     #[wasm_bindgen(js_name = attachSound)]
     pub fn attach_sound(node: &Node);
 
-    /// The next level of an adaptive block: what `Effect::ChooseLevel` holds as JSON in, its event and the clips that
-    /// may come next as JSON out.
+    /// The next level of an adaptive block: what `Effect::ChooseLevel` holds as JSON in, its event as JSON out.
     #[wasm_bindgen(js_name = nextLevel, catch)]
     pub async fn next_level(request: &str) -> Result<JsValue, JsValue>;
+
+    /// The clips that may come after the level that was chosen last, a list as JSON.
+    #[wasm_bindgen(js_name = levelsAhead, catch)]
+    pub async fn levels_ahead() -> Result<JsValue, JsValue>;
 
     /// The next batch of pairs: `mimique_study::PairRequest` as JSON in, the event as JSON out.
     #[wasm_bindgen(js_name = drawPairs, catch)]

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use mimique_session::flow::{Input, PlacedClip};
 use mimique_session::{PlayLog, StageFailure};
 use mimique_study::MEDIA_PREFIX;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -104,13 +105,12 @@ impl Engine {
     pub(super) fn choose_level(self: &Rc<Self>, request: Value) {
         let engine = Rc::clone(self);
         spawn_local(async move {
-            let chosen = host::next_level(&request.to_string()).await;
-            let chosen = chosen.ok().and_then(|text| text.as_string());
-            let mut chosen: Value =
-                chosen.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-            let ahead = chosen["ahead"].as_array().into_iter().flatten();
-            let ahead = ahead.filter_map(|clip| Some(clip.as_str()?.to_owned())).collect();
-            engine.dispatch(Input::LevelChosen { event: chosen["event"].take(), ahead });
+            let chosen = read(host::next_level(&request.to_string()).await);
+            engine.dispatch(Input::LevelChosen(chosen.unwrap_or_default()));
+            // What may come next is found out once the level stands there.
+            if let Some(ahead) = read(host::levels_ahead().await) {
+                engine.dispatch(Input::LevelsAhead(ahead));
+            }
         });
     }
 
@@ -122,9 +122,7 @@ impl Engine {
             let session = &engine.plan.started.session;
             let others = engine.service.pair_counts(session, component).await;
             request["others"] = others.unwrap_or_else(|_| Value::Array(Vec::new()));
-            let drawn = host::draw_pairs(&request.to_string()).await;
-            let drawn = drawn.ok().and_then(|text| text.as_string());
-            let event = drawn.and_then(|text| serde_json::from_str(&text).ok());
+            let event = read(host::draw_pairs(&request.to_string()).await);
             engine.dispatch(Input::PairsDrawn(event.unwrap_or_default()));
         });
     }
@@ -154,6 +152,11 @@ impl Engine {
             engine.dispatch(input);
         });
     }
+}
+
+/// What a script gave as JSON; nothing where it failed.
+fn read<T: DeserializeOwned>(given: Result<JsValue, JsValue>) -> Option<T> {
+    serde_json::from_str(&given.ok()?.as_string()?).ok()
 }
 
 /// The clip that a failure of the stage is told of.
