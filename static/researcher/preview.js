@@ -53,6 +53,23 @@ const comparison = new ShownComparison((frame) => {
   if (rate) player.seek((1000 * frame) / rate);
 });
 
+// A block of reverse correlation draws every trial anew: in the place of its avatar at rest stand a few examples.
+const EXAMPLES = 5;
+
+function withFaces(prepared, components) {
+  const clips = { ...prepared };
+  for (const [name, { type, ...block }] of Object.entries(components)) {
+    if (type !== "reverseCorrelation") continue;
+    const atRest = clips[block.clip];
+    delete clips[block.clip];
+    for (let trial = 1; trial <= EXAMPLES; trial++) {
+      const step = `${name}/${trial}`;
+      clips[step] = { ...atRest, face: { step, block, seed: 0, configHash: "preview", slot: 0 } };
+    }
+  }
+  return clips;
+}
+
 /// Shows how the clips of both panels differ.
 function compare() {
   const [a, b] = player.panels.map((panel) => panel.wanted());
@@ -224,7 +241,8 @@ async function start() {
     const refusal = await answer.json().catch(() => ({}));
     throw new Error(refusal.message ?? `The server answered ${answer.status}; reload the page.`);
   }
-  const { clips, study: { look } } = await answer.json();
+  const { clips: prepared, study: { look, components } } = await answer.json();
+  const clips = withFaces(prepared, components);
   const ids = Object.keys(clips);
   if (ids.length === 0) throw new Error("This study has no clips.");
   $("backend").textContent = await backend();

@@ -32,7 +32,7 @@ const study = small("faces", {
     },
   },
   sequence: { order: "fixed", components: ["faces"] },
-  stimuli: { avatars: { head: { builtin: { seed: 1 } } } },
+  stimuli: { avatars: { head: { builtin: { seed: 1 } } }, captures: {}, segments: [], methods: {} },
 });
 
 test("reverse correlation: faces are drawn in the browser, and drawn again by the export", { skip: unable, timeout: 400_000 }, async () => {

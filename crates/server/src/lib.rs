@@ -58,6 +58,7 @@ pub use files::packs::{PackError, PackStore};
 pub use hosting::{Hosting, prepare_hosting};
 pub use http::router;
 pub use participant::withdrawal::withdrawal_hash;
+pub use researcher::dashboard::session_sums::FORM as SUMS_FORM;
 pub use retention::{ClockDoubt, Sweep, Swept, clock_doubt, confirm_clock, sweep_overdue};
 pub use serve::{ServeError, serve};
 pub use state::App;

@@ -109,6 +109,9 @@ impl Page {
                         let ready = |clip| Input::ClipPrepared { clip };
                         inputs.extend(clips.into_iter().map(ready));
                     }
+                    Effect::Flush => {
+                        inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
+                    }
                     _ => {}
                 }
             }

@@ -3,15 +3,16 @@
 use axum::Json;
 use axum::extract::{Path, State};
 use mimique_storage::StorageError;
-use mimique_study::PairCount;
+use mimique_study::{PairCount, PairsComponent};
 
 use super::sessions::token_hash;
 use crate::error::Error;
 use crate::researcher::dashboard::session_sums::PairSums;
 use crate::state::App;
 
-/// Choices of everybody else, in the same version of the study, between the levels of a block of pairs. Whoever is
-/// deleted is not among them. They are as new as the sums of the dashboard.
+/// Choices of everybody else, in the same version of the study, between the levels of a block of pairs; none of a block
+/// that does not draw its pairs by them, and of a version that is not hosted any more. Whoever is deleted is not among
+/// them. They are as new as the sums of the dashboard.
 pub(crate) async fn counts(
     State(app): State<App>,
     Path((token, component)): Path<(String, String)>,
@@ -19,6 +20,14 @@ pub(crate) async fn counts(
     let own = app.storage.session(&token_hash(&token)?).await?;
     if own.is_deleted() {
         return Err(StorageError::Withdrawn.into());
+    }
+    let is_active =
+        |(name, block): (&str, PairsComponent)| name == component && block.schedule.active() > 0;
+    let is_told = app.study(&own.study_id).is_ok_and(|study| {
+        study.config_hash() == own.config_hash && study.study().pair_blocks().any(is_active)
+    });
+    if !is_told {
+        return Ok(Json(Vec::new()));
     }
     let all = app.sums.of_study(&app.storage, &own.study_id).await?;
     let mut counts = PairSums::default();

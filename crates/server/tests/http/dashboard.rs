@@ -1,6 +1,7 @@
 //! The dashboard of a large study: pages of participants, sums that are kept.
 
 use axum::http::StatusCode;
+use mimique_server::SUMS_FORM;
 
 use crate::client::TestServer;
 use crate::people::owner;
@@ -68,7 +69,6 @@ pub async fn sums_are_kept_and_are_what_is_counted_anew(server: &TestServer) {
 
 /// Neither sums that were kept nor those that are on their way outlive the answers.
 pub async fn a_deleted_session_leaves_no_sums(server: &TestServer) {
-    const FORM: i64 = 1;
     demo_participant(server, 1, usize::MAX).await;
     demo_participant(server, 2, usize::MAX).await;
     let mut owner = owner(server).await;
@@ -76,23 +76,23 @@ pub async fn a_deleted_session_leaves_no_sums(server: &TestServer) {
     owner.open(server, path).await;
     let sessions = server.storage.sessions("demo").await.unwrap();
     let keys = [sessions[0].key, sessions[1].key];
-    let kept = server.storage.kept_sums_of(&keys, FORM).await.unwrap();
+    let kept = server.storage.kept_sums_of(&keys, SUMS_FORM).await.unwrap();
     assert_eq!(kept.len(), 2);
     let erased = server.storage.erase_participant("demo", 1, "somebody", 1).await.unwrap();
     assert!(erased > 0);
     let left = async || -> Vec<i64> {
-        let kept = server.storage.kept_sums_of(&keys, FORM).await.unwrap();
+        let kept = server.storage.kept_sums_of(&keys, SUMS_FORM).await.unwrap();
         kept.iter().map(|kept| kept.session_key).collect()
     };
     assert_eq!(left().await, keys[1..]);
     // Whoever was counting meanwhile keeps nothing of it.
-    server.storage.keep_sums(FORM, &kept).await.unwrap();
+    server.storage.keep_sums(SUMS_FORM, &kept).await.unwrap();
     assert_eq!(left().await, keys[1..]);
     // Nor of a session that has changed meanwhile.
     let old = mimique_storage::CountedSo { event_count: 3, receipt_events: None };
     let old = mimique_storage::KeptSums { counted: old, sums: "old".into(), ..kept[1].clone() };
-    server.storage.keep_sums(FORM, &[old]).await.unwrap();
-    assert_eq!(server.storage.kept_sums_of(&keys, FORM).await.unwrap(), kept[1..]);
+    server.storage.keep_sums(SUMS_FORM, &[old]).await.unwrap();
+    assert_eq!(server.storage.kept_sums_of(&keys, SUMS_FORM).await.unwrap(), kept[1..]);
     let page = owner.open(server, path).await.text();
     assert!(page.contains("<dt>withdrawn</dt><dd>1</dd>"), "{page}");
 }

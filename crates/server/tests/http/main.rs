@@ -4,6 +4,7 @@
 //! cluster, each in a fresh database.
 
 mod accounts;
+mod active_pairs;
 mod backups;
 mod client;
 mod dashboard;
@@ -135,6 +136,7 @@ topics! {
     exports::identifiers_are_exported_only_when_asked_for,
     exports::each_session_is_read_by_its_own_version,
     exports::a_study_must_be_named_where_there_are_several,
+    active_pairs::pages_are_told_what_others_answered,
     simulated::a_simulated_export_is_the_servers,
     accounts::the_first_link_makes_the_owner_once,
     accounts::links_expire_and_secrets_are_not_stored,

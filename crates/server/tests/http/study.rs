@@ -50,7 +50,13 @@ pub fn hosted() -> HostedStudy {
 
 /// The file of the demo study.
 pub fn demo_file() -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config/demo.json");
+    of("demo")
+}
+
+/// The file of a study of `study-config`.
+pub fn of(name: &str) -> Value {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config");
+    let path = folder.join(format!("{name}.json"));
     mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 

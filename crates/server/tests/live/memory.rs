@@ -163,7 +163,8 @@ fn sums_are_kept_as_sessions_come_to_rest() {
         let mut kept = 0;
         while kept < sessions && began.elapsed() < Duration::from_secs(60) {
             tokio::time::sleep(Duration::from_millis(200)).await;
-            kept = storage.kept_sums_of(&keys, 1).await.unwrap().len() as u64;
+            kept =
+                storage.kept_sums_of(&keys, mimique_server::SUMS_FORM).await.unwrap().len() as u64;
         }
         storage.close().await;
         kept

@@ -26,7 +26,6 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
         avatars::examine(avatar, &pointer, lookup, issues);
     }
     avatars::videos(subject, issues);
-    needed(subject, issues);
     let only_played = only_played(subject);
     for (name, capture) in &stimuli.captures {
         let pointer = below("/stimuli/captures", name);
@@ -53,29 +52,6 @@ pub(super) fn examine(subject: &Subject<'_>, lookup: &FileLookup<'_>, issues: &m
     factors(subject, issues);
     look(subject, issues);
     unused(subject, issues);
-}
-
-/// What every study has whose clips are of captures: all but those whose faces move at random alone.
-fn needed(subject: &Subject<'_>, issues: &mut Issues) {
-    let study = subject.study;
-    let is_drawn = |block: &Component| matches!(block, Component::ReverseCorrelation(_));
-    let mut blocks = study.components.values().filter(|component| component.is_block());
-    let stimuli = &study.stimuli;
-    if study.training.is_none()
-        && !blocks.clone().any(|block| !is_drawn(block))
-        && blocks.any(is_drawn)
-    {
-        return;
-    }
-    for (key, is_missing) in [
-        ("captures", stimuli.captures.is_empty()),
-        ("segments", stimuli.segments.is_empty()),
-        ("methods", stimuli.methods.is_empty()),
-    ] {
-        if is_missing {
-            issues.error("/stimuli", Problem::MissingKey { key: key.to_owned() });
-        }
-    }
 }
 
 pub(super) fn identifier(name: &str, pointer: &str, issues: &mut Issues) {

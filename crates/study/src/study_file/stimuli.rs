@@ -21,14 +21,11 @@ pub const DATA_PREFIX: &str = "${MIMIQUE_DATA}/";
 pub struct Stimuli {
     /// Heads, by identifier.
     pub avatars: BTreeMap<String, Avatar>,
-    /// Recorded or built-in performances, by identifier; needed but for faces that move at random.
-    #[serde(default)]
+    /// Recorded or built-in performances, by identifier; empty where all faces move at random.
     pub captures: BTreeMap<String, Capture>,
-    /// Cuts of the captures; needed but for faces that move at random.
-    #[serde(default)]
+    /// Cuts of the captures; empty where all faces move at random.
     pub segments: Vec<Segment>,
-    /// Methods with parameters, by identifier; needed but for faces that move at random.
-    #[serde(default)]
+    /// Methods with parameters, by identifier; empty where all faces move at random.
     pub methods: BTreeMap<String, MethodEntry>,
     /// Which sounds clips are played with, by identifier: a factor. Each clip has its segment's own sound, if it
     /// has one, where none is given.

@@ -39,7 +39,7 @@ pub(crate) fn model_shares(
     let mut spoken = Vec::new();
     let mut y = top;
     for (label, own) in levels {
-        svg.text(LEFT - 10.0, y + 15.0, "strong", Anchor::End, &clipped(label, 15));
+        svg.text(LEFT, y + 15.0, "strong", Anchor::Start, &clipped(label, 45));
         y += heading;
         let words = language.pick(["model", "observed"], ["modèle", "observées"]);
         for (word, shares) in words.into_iter().zip([&own.model, &own.observed]) {

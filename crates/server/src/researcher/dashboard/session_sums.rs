@@ -16,7 +16,7 @@ use crate::export::sources::{Version, as_started};
 
 /// The form of [`SessionSums`] and of what they are made by. Whoever changes either counts it up: what was
 /// kept in another form is made anew.
-pub(crate) const FORM: i64 = 2;
+pub const FORM: i64 = 2;
 
 /// What is counted of one session. No text that was written is in it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
