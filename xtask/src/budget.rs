@@ -38,9 +38,9 @@ const BUDGETS: [Budget; 4] = [
         // 4 are blocks of pairs (the reader of the dealt pairs, whose turn it is to be shown them, clips in turn) and
         // what is told to another program on the machine. 22 are panels (their pages in the projection, a canvas, a
         // question and a button for each clip, replays of one alone) and what is answered while a clip plays (keys,
-        // lines, and who reads and checks them). 9 are active pairs (their batches in events and record), faces that are
+        // lines, and who reads and checks them). 10 are active pairs (their batches in events and record), faces that are
         // drawn for one trial, and which levels a judgement of differences shows.
-        kilobytes: 376.0,
+        kilobytes: 378.0,
     },
     Budget {
         name: "the solver and the scripts of the stage",

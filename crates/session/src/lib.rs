@@ -3,6 +3,7 @@
 mod admission;
 mod event;
 pub mod flow;
+mod panel;
 mod plan;
 mod record;
 pub mod rows;

@@ -5,6 +5,7 @@
 //! makes of them cannot drift from real sessions. Every person has ChaCha streams of their own, by seed,
 //! number and purpose: the same seed gives the same events in any order and on any number of threads.
 
+mod answering;
 mod defaults;
 mod draws;
 mod faces;

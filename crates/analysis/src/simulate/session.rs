@@ -1,10 +1,10 @@
 //! A simulated person goes through the study: the page's own state machine makes the events.
 
-use mimique_session::flow::{Effect, Input, Panel, Plan, State, StepKind, update};
+use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_session::{Client, EventKind, LevelShown, PlayLog, SOUND_HEARD, SoundLog};
+use mimique_session::{Client, EventKind, PlayLog, SOUND_HEARD, SoundLog};
 use mimique_study::{
-    Answers, Calibration, Display, DrawnPairs, KindOfQuestion as _, Multilingual as _, OrderError,
+    Calibration, Display, DrawnPairs, KindOfQuestion as _, Multilingual as _, OrderError,
     PairRequest, TRACE_HZ,
 };
 use serde::Deserialize as _;
@@ -13,8 +13,7 @@ use super::faces::Viewer;
 use super::latent::ClipEffects;
 use super::levels::{Levels, Observer};
 use super::model::Model;
-use super::panels::RatedPage;
-use super::person::{BEFORE_REPLAY_MS, Companion, Person, Raw, Showing, as_json};
+use super::person::{BEFORE_REPLAY_MS, Person, Raw, Showing, as_json};
 use super::scaling::Judge;
 
 /// 5 January 2026, 9:00 UTC: when the first simulated session begins.
@@ -67,21 +66,21 @@ pub(crate) fn events(
 const PRACTICE: u64 = 0x7072_6163_7469_6365;
 
 /// A page that carries out effects as a browser does, and a server that stores at once.
-struct Page<'p> {
-    plan: &'p Plan,
-    state: State,
-    events: Vec<Event>,
-    now_ms: f64,
-    levels: Levels,
+pub(super) struct Page<'p> {
+    pub(super) plan: &'p Plan,
+    pub(super) state: State,
+    pub(super) events: Vec<Event>,
+    pub(super) now_ms: f64,
+    pub(super) levels: Levels,
 }
 
 impl Page<'_> {
-    fn wait(&mut self, ms: f64) {
+    pub(super) fn wait(&mut self, ms: f64) {
         // Eighths of a millisecond: sums and differences of times are exact.
         self.now_ms += eighths(ms);
     }
 
-    fn send(&mut self, input: Input) {
+    pub(super) fn send(&mut self, input: Input) {
         let mut inputs = vec![input];
         while let Some(input) = inputs.pop() {
             let state = std::mem::take(&mut self.state);
@@ -120,17 +119,18 @@ pub(crate) fn eighths(ms: f64) -> f64 {
     ((ms * 8.0).round() / 8.0).max(0.125)
 }
 
-struct Walk<'w, 'm> {
-    model: &'m Model<'m>,
-    seed: u64,
-    person: Person<'m>,
-    practice: Person<'m>,
-    observer: Observer,
-    viewer: Viewer,
-    judge: Judge,
-    page: Page<'w>,
+/// A simulated person on the way through the study.
+pub(super) struct Walk<'w, 'm> {
+    pub(super) model: &'m Model<'m>,
+    pub(super) seed: u64,
+    pub(super) person: Person<'m>,
+    pub(super) practice: Person<'m>,
+    pub(super) observer: Observer,
+    pub(super) viewer: Viewer,
+    pub(super) judge: Judge,
+    pub(super) page: Page<'w>,
     /// Trials finished.
-    trial: usize,
+    pub(super) trial: usize,
 }
 
 impl Walk<'_, '_> {
@@ -285,7 +285,7 @@ impl Walk<'_, '_> {
         self.page.send(Input::Shown { step: step.to_owned() });
     }
 
-    fn read(&mut self, median_ms: f64) {
+    pub(super) fn read(&mut self, median_ms: f64) {
         let ms = self.person.chance().log_normal(median_ms, 0.4);
         self.page.wait(ms);
     }
@@ -391,7 +391,12 @@ impl Walk<'_, '_> {
     }
 
     /// What a person would press, and how long it takes; nothing where the answer is the option without a key.
-    fn pressed(&mut self, question: &str, clip: &str, training: bool) -> Option<(String, f64)> {
+    pub(super) fn pressed(
+        &mut self,
+        question: &str,
+        clip: &str,
+        training: bool,
+    ) -> Option<(String, f64)> {
         let (place, clip) = (self.model.question(question)?, self.model.clip(clip)?);
         let trial = self.trial;
         let person = if training { &mut self.practice } else { &mut self.person };
@@ -444,162 +449,6 @@ impl Walk<'_, '_> {
             traces: serde_json::Value::Null,
             alone: None,
             aborted: aborted.map(str::to_owned),
-        }
-    }
-
-    fn answer_trial(&mut self, clip: &str, training: bool) {
-        let here = self.page.state.record.step;
-        if let Some(shown) = self.page.state.record.attempt.level.clone() {
-            self.answer_level(&shown);
-            return;
-        }
-        let trial = self.page.plan.steps[here].trial();
-        if trial.is_some_and(|trial| trial.face.is_some()) {
-            self.answer_face();
-            return;
-        }
-        if let Some(panel) = trial.and_then(|trial| trial.panel.as_deref().cloned()) {
-            match panel.is_rated() {
-                true => self.answer_panel(&panel),
-                false => self.answer_differences(&panel),
-            }
-            return;
-        }
-        let Some(clip) = self.model.clip(clip) else { return };
-        let chosen = self.page.state.record.chosen(&self.page.plan.steps[here]);
-        let beside = trial.and_then(|trial| trial.pair(chosen.as_ref()).1);
-        let beside =
-            beside.and_then(|(clip, left)| Some(Companion { clip: self.model.clip(clip)?, left }));
-        for question in self.page.plan.steps[here].questions() {
-            let record = &self.page.state.record;
-            if !question.is_shown(&record.drafts, &record.answers) {
-                continue;
-            }
-            let Some(place) = self.model.question(&question.id) else { continue };
-            if question.kind.is_traced() {
-                continue;
-            }
-            if question.kind.keys().is_some() {
-                // Whoever has not pressed while the clip was played does so now.
-                let (id, clip) = (question.id.clone(), self.model.clips[clip].id.clone());
-                if self.page.state.record.draft(&id).is_none()
-                    && let Some((value, ms)) = self.pressed(&id, &clip, training)
-                {
-                    self.page.wait(ms);
-                    let at_ms = self.page.now_ms;
-                    self.page.send(Input::Press { question: id, value, at_ms });
-                }
-                continue;
-            }
-            let person = if training { &mut self.practice } else { &mut self.person };
-            let ms = person.answering_ms(Some(clip));
-            let Some(raw) = person.trial_answer(place, clip, beside, self.trial) else { continue };
-            let value = as_json(&self.model.questions[place], raw);
-            self.page.wait(ms);
-            self.page.send(Input::Answer { question: question.id.clone(), value });
-        }
-        self.read(500.0);
-    }
-
-    /// Each clip of a panel, from the first place to the last.
-    fn answer_panel(&mut self, panel: &Panel) {
-        let step = &self.page.plan.steps[self.page.state.record.step];
-        let number = self.page.plan.started.participant;
-        let page = RatedPage::of(self.model.parameters, self.seed, number, &step.id);
-        let Some(place) = self.model.question(&panel.question) else { return };
-        for (question, id) in step.questions().iter().zip(&panel.clips) {
-            let Some(clip) = self.model.clip(id) else { continue };
-            let ms = self.person.answering_ms(Some(clip));
-            let found = page.is_found(panel, id) && !self.person.is_careless();
-            let raw = match question.kind.bounds() {
-                Some([_, Some(most)]) if found => Some(Raw::Number(most)),
-                _ => self.person.panel_answer(place, clip, page.shift, self.trial),
-            };
-            let Some(raw) = raw else { continue };
-            let value = as_json(&self.model.questions[place], raw);
-            self.page.wait(ms);
-            self.page.send(Input::Answer { question: question.id.clone(), value });
-        }
-        self.read(500.0);
-    }
-
-    /// What a face is that was drawn for this trial.
-    fn answer_face(&mut self) {
-        let here = self.page.state.record.step;
-        let step = &self.page.plan.steps[here];
-        let careless = self.person.is_careless();
-        let started = &self.page.plan.started;
-        let answers = self.viewer.answers(&step.id, step.questions(), started, careless);
-        for (question, value) in answers.unwrap_or_default() {
-            let Some(asked) = step.questions().iter().find(|each| each.id == question) else {
-                continue;
-            };
-            let record = &self.page.state.record;
-            if !asked.is_shown(&record.drafts, &record.answers) {
-                continue;
-            }
-            let ms = self.person.answering_ms(None);
-            self.page.wait(ms);
-            match (asked.kind.keys(), value.as_str()) {
-                (Some(keys), Some(value)) if keys.contains_key(value) => {
-                    let (value, at_ms) = (value.to_owned(), self.page.now_ms);
-                    self.page.send(Input::Press { question, value, at_ms });
-                }
-                // Not to press is the answer that has no key.
-                (Some(_), _) => {}
-                _ => self.page.send(Input::Answer { question, value }),
-            }
-        }
-        self.read(500.0);
-    }
-
-    /// Which of two pairs of clips differ more.
-    fn answer_differences(&mut self, panel: &Panel) {
-        let here = self.page.state.record.step;
-        let step = &self.page.plan.steps[here];
-        let careless = self.person.is_careless();
-        let second = self.judge.second_differs_more(&step.id, &panel.clips, careless);
-        let asked = step.questions().first();
-        if let (Some(second), Some(asked)) = (second, asked)
-            && let Some(option) = asked.kind.options().get(usize::from(second))
-        {
-            let ms = self.person.answering_ms(None);
-            self.page.wait(ms);
-            let (question, value) = (asked.id.clone(), option.value.as_str().into());
-            self.page.send(Input::Answer { question, value });
-        }
-        self.read(500.0);
-    }
-
-    /// Which of two clips is the varied one.
-    fn answer_level(&mut self, shown: &LevelShown) {
-        let here = self.page.state.record.step;
-        let ms = self.person.answering_ms(None);
-        self.page.wait(ms);
-        let careless = self.person.is_careless();
-        let Some(side) = self.observer.answer(shown, careless) else { return };
-        for question in self.page.plan.steps[here].questions() {
-            let value = side.into();
-            self.page.send(Input::Answer { question: question.id.clone(), value });
-        }
-        self.read(500.0);
-    }
-
-    fn answer_page(&mut self, page: &mimique_study::Questionnaire, demographics: bool) {
-        let told: Answers = self.person.about.clone();
-        for question in &page.questions {
-            let record = &self.page.state.record;
-            if !question.is_shown(&record.drafts, &record.answers) {
-                continue;
-            }
-            let answer = match demographics {
-                true => told.get(&question.id).cloned(),
-                false => self.person.page_answer(&question.id),
-            };
-            self.read(4_000.0);
-            if let Some(value) = answer {
-                self.page.send(Input::Answer { question: question.id.clone(), value });
-            }
         }
     }
 }

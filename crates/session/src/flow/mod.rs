@@ -35,7 +35,8 @@ mod view;
 mod view_gate;
 mod view_question;
 
-pub use crate::plan::{Companion, Panel, Plan, Step, StepKind, TrialStep};
+pub use crate::panel::Panel;
+pub use crate::plan::{Companion, Plan, Step, StepKind, TrialStep};
 pub use agreement::AgreementView;
 pub use effect::Effect;
 pub(crate) use gate::unmet;

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use crate::event::ChosenClips;
-use crate::plan::{Panel, TrialStep};
+use crate::panel::Panel;
+use crate::plan::TrialStep;
 
 /// A clip on its canvas.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

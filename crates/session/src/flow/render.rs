@@ -12,7 +12,8 @@ use super::view::{
 };
 use super::view_question::QuestionView;
 use crate::event::PlayLog;
-use crate::plan::{Panel, Plan, Step, StepKind, TrialStep, letter};
+use crate::panel::{Panel, letter};
+use crate::plan::{Plan, Step, StepKind, TrialStep};
 use crate::record::CutShort;
 use crate::standing::Standing;
 use mimique_study::text::Words;

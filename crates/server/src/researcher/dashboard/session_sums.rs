@@ -14,8 +14,8 @@ use tokio_stream::StreamExt as _;
 use super::tally::{Counting, Tally, chosen_of};
 use crate::export::sources::{Version, as_started};
 
-/// The form of [`SessionSums`] and of what they are made by. Whoever changes either counts it up: what was
-/// kept in another form is made anew.
+/// The form of the sums that are kept of a session, and of what they are made by. Whoever changes either counts it up:
+/// what was kept in another form is made anew.
 pub const FORM: i64 = 2;
 
 /// What is counted of one session. No text that was written is in it.
