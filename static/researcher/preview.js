@@ -130,7 +130,8 @@ class Panel {
     this.#clipId = null;
     this.#facts.replaceChildren();
     this.#notices.replaceChildren();
-    exertion.put(this, id === "" ? null : id).catch((error) => this.#wanted === id && this.#notices.append(made("p", { className: "notice warn" }, error.message)));
+    const face = this.#clips[id]?.face;
+    exertion.put(this, id === "" || face ? null : id).catch((error) => this.#wanted === id && this.#notices.append(made("p", { className: "notice warn" }, error.message)));
     if (id === "") return player.draw();
     const bar = made("progress", { max: 1, value: 0 });
     const words = made("span", {}, "Loading and solving");
@@ -186,9 +187,9 @@ class Panel {
   #describe(summary) {
     const clip = this.clip();
     const { statistics, gazeAtRest } = clip.report ?? {};
-    const { method, sound: heard } = this.#clips[this.#clipId];
+    const { method, sound: heard, face } = this.#clips[this.#clipId];
     const rows = [
-      ["Method", methodWords(method)],
+      ["Method", face ? "action units drawn at random" : methodWords(method)],
       ["Length", `${(summary.duration_ms / 1000).toFixed(2)} s, ${summary.frames} frames at ${round(summary.rate_hz)} Hz`],
       ["Solved in", `${summary.solve_ms.toFixed(0)} ms`],
       ["Weights", summary.weights_hash.slice(0, 16)],

@@ -87,6 +87,23 @@ test("reverse correlation: faces are drawn in the browser, and drawn again by th
     }
     assert.equal(new Set(rows.map((row) => row.trajectories)).size, TRIALS, "every face is another");
     assert.equal(rows[RELOADED_AT - 1].interruptions, "1");
+
+    await page.goto(`${server.url}/preview/faces?backend=webgl2`);
+    const drawn = (panel) => page.locator(`[data-panel=${panel}] .preview-clip`);
+    for (const panel of ["a", "b"]) {
+      if (panel === "b") await page.selectOption("#clip-b", "faces/2");
+      await drawn(panel).getByText("action units drawn at random").waitFor({ timeout: 60_000 });
+    }
+    assert.deepEqual(await page.locator("#clip-a option").allTextContents(), [1, 2, 3, 4, 5].map((trial) => `faces/${trial}`));
+    assert.notEqual(await drawn("a").innerText(), await drawn("b").innerText(), "two faces, two hashes");
+    await page.evaluate(() => {
+      const scrub = document.querySelector("#scrub");
+      scrub.value = 900;
+      scrub.dispatchEvent(new Event("input"));
+    });
+    await page.screenshot({ path: join(shots, "preview.png"), fullPage: true });
+    assert.equal(await page.locator("main .notice:visible").count(), 0, "nothing to complain of");
+    assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
     await browser.close();
     await server.stop();
