@@ -1,96 +1,30 @@
 //! Adaptive blocks from the page to the export: levels follow the answers, a reload goes on at the same level, and
 //! what was recorded is replayed from seed and answers alone.
 
+#[path = "support/stepped.rs"]
+mod stepped;
+
 use std::collections::BTreeMap;
 
-use mimique_session::flow::{Effect, Input, Plan, State, update};
+use mimique_session::flow::{Input, State};
 use mimique_session::rows::{SessionRecord, tidy};
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, EventKind, PlayLog};
-use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study};
-use serde::Deserialize as _;
+use mimique_study::Study;
 use serde_json::{Value, json};
+use stepped::Page;
 
 const SEED: u64 = 20_261_125;
 
 fn study(change: impl FnOnce(&mut Value)) -> Study {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/jnd-alpha.json");
-    let text = std::fs::read_to_string(path).expect("the study");
-    let mut value = mimique_study::parse(&text).expect("JSON");
-    value.as_object_mut().unwrap().remove("consent");
-    change(&mut value);
-    Study::from_value(&value).expect("a study")
+    stepped::study("jnd-alpha.json", change)
 }
 
 fn started() -> SessionStarted {
-    SessionStarted {
-        session: "s".to_owned(),
-        participant_id: "p0001".to_owned(),
-        participant: 3,
-        slot: 3,
-        condition: None,
-        seed: SEED,
-        stage: "live".to_owned(),
-        config_hash: "abc".to_owned(),
-        withdrawal_code: String::new(),
-    }
-}
-
-/// A page whose module of levels is called as a browser calls it.
-struct Page {
-    plan: Plan,
-    state: State,
-    events: Vec<Event>,
-    prepared: Vec<String>,
-    now_ms: f64,
+    stepped::started(SEED, 3, "abc")
 }
 
 impl Page {
-    fn open(study: &Study) -> Self {
-        let plan = Plan::new(study.projection(), started()).expect("an order");
-        let state = State::new(&plan, "en");
-        let mut page = Self { plan, state, events: vec![], prepared: vec![], now_ms: 0.0 };
-        page.send(Input::Opened(Client::default()));
-        page.send(Input::Measured(mimique_study::Display {
-            viewport: [1600, 900],
-            device_pixel_ratio: 1.0,
-            refresh_hz: Some(60.0),
-            backend: Some("webgpu".to_owned()),
-            desktop: true,
-            fullscreen: true,
-        }));
-        page
-    }
-
-    fn send(&mut self, input: Input) {
-        let mut inputs = vec![input];
-        while let Some(input) = inputs.pop() {
-            self.now_ms += 10.0;
-            let state = std::mem::take(&mut self.state);
-            let (state, effects) = update(&self.plan, state, input, self.now_ms);
-            self.state = state;
-            for effect in effects {
-                match effect {
-                    Effect::Store(event) => self.events.push(event),
-                    Effect::PrepareClips(clips) => {
-                        self.prepared.extend(clips.clone());
-                        let ready = |clip| Input::ClipPrepared { clip };
-                        inputs.extend(clips.into_iter().map(ready));
-                    }
-                    Effect::ChooseLevel(request) => inputs.extend(chosen(&request)),
-                    Effect::Flush => {
-                        inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
-                    }
-                    _ => {}
-                }
-            }
-        }
-    }
-
-    fn step(&self) -> Option<String> {
-        self.plan.step(self.state.record.step).map(|step| step.id.clone())
-    }
-
     /// Plays the clips and answers a trial; goes on from a break.
     fn trial(&mut self, sees_from: f64) {
         let Some(level) = self.state.record.attempt.level.clone() else {
@@ -114,36 +48,8 @@ impl Page {
     }
 }
 
-/// What the module of the page does, without anything kept between its calls: the level, which is taken in first, and
-/// what may come after it.
-fn chosen(request: &Value) -> [Input; 2] {
-    let block = AdaptiveComponent::deserialize(&request["block"]).expect("a block");
-    let draw = Draw {
-        seed: request["seed"].as_u64().unwrap(),
-        config_hash: request["configHash"].as_str().unwrap(),
-        participant: request["slot"].as_u64().unwrap(),
-        condition: None,
-    };
-    let component = request["component"].as_str().unwrap();
-    let mut closed_loop = ClosedLoop::new(block, component, draw).expect("levels");
-    for answer in request["answers"].as_array().unwrap() {
-        closed_loop.answer(answer.as_str());
-    }
-    let event = match closed_loop.next() {
-        Some(level) => {
-            let mut event = serde_json::to_value(level).unwrap();
-            event["type"] = "level_chosen".into();
-            event["step"] = request["step"].clone();
-            event
-        }
-        None => json!({ "type": "levels_over", "step": request["step"] }),
-    };
-    let after = ["left", "right"].map(|side| closed_loop.after(side).clips());
-    [Input::LevelsAhead(after.concat()), Input::LevelChosen(event)]
-}
-
 fn run(study: &Study, sees_from: f64) -> Page {
-    let mut page = Page::open(study);
+    let mut page = Page::open(study, started());
     for _ in 0..60 {
         if page.step().is_none() {
             break;
@@ -218,7 +124,7 @@ fn a_level_that_answers_do_not_give_is_told() {
 #[test]
 fn both_clips_that_may_come_next_are_made_ready_while_one_is_shown() {
     let study = study(|_| {});
-    let mut page = Page::open(&study);
+    let mut page = Page::open(&study, started());
     for _ in 0..8 {
         page.prepared.clear();
         let sees_from = if page.events.len().is_multiple_of(2) { 0.0 } else { 2.0 };
@@ -237,7 +143,7 @@ fn both_clips_that_may_come_next_are_made_ready_while_one_is_shown() {
 fn a_reload_goes_on_at_the_same_level_of_the_same_track() {
     let study = study(|_| {});
     let whole = run(&study, 0.5);
-    let mut page = Page::open(&study);
+    let mut page = Page::open(&study, started());
     for _ in 0..7 {
         page.trial(0.5);
     }

@@ -1,28 +1,29 @@
 //! Blocks of reverse correlation from the page to the export: every trial shows a face of its own, which seed and
 //! participant give again.
 
+#[path = "support/stepped.rs"]
+mod stepped;
+
 use std::collections::BTreeMap;
 
-use mimique_session::flow::{Effect, Input, Plan, State, update};
+use mimique_session::flow::Input;
 use mimique_session::rows::{SessionRecord, Table, tidy};
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_session::{Admission, Client, PlayLog};
+use mimique_session::{Admission, PlayLog};
 use mimique_study::{
     ClipSource, Draw, ReverseCorrelationComponent, ShownCourse, Study, UnitShapes,
 };
 use serde_json::{Value, json};
+use stepped::Page;
 
 const SEED: u64 = 20_261_126;
 const TRIALS: usize = 5;
 
 fn study() -> Study {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../study-config/reverse-correlation.json");
-    let text = std::fs::read_to_string(path).expect("the study");
-    let mut value = mimique_study::parse(&text).expect("JSON");
-    value.as_object_mut().unwrap().remove("consent");
-    value["components"]["faces"]["trials"] = TRIALS.into();
-    value["sequence"]["interruptions"][0]["spacing"] = 2.into();
-    Study::from_value(&value).expect("a study")
+    stepped::study("reverse-correlation.json", |study| {
+        study["components"]["faces"]["trials"] = TRIALS.into();
+        study["sequence"]["interruptions"][0]["spacing"] = 2.into();
+    })
 }
 
 fn block(study: &Study) -> ReverseCorrelationComponent {
@@ -30,17 +31,7 @@ fn block(study: &Study) -> ReverseCorrelationComponent {
 }
 
 fn started(participant: u64, config_hash: &str) -> SessionStarted {
-    SessionStarted {
-        session: "s".to_owned(),
-        participant_id: format!("p{participant:04}"),
-        participant,
-        slot: participant,
-        condition: None,
-        seed: SEED,
-        stage: "live".to_owned(),
-        config_hash: config_hash.to_owned(),
-        withdrawal_code: String::new(),
-    }
+    stepped::started(SEED, participant, config_hash)
 }
 
 /// An avatar with a shape for each unit.
@@ -69,59 +60,7 @@ fn shown_hash(study: &Study, step: &str, started: &SessionStarted) -> String {
     block.face(&shown, &units).weights_hash
 }
 
-struct Page {
-    plan: Plan,
-    state: State,
-    events: Vec<Event>,
-    prepared: Vec<String>,
-    now_ms: f64,
-}
-
 impl Page {
-    fn open(study: &Study, started: SessionStarted) -> Self {
-        let plan = Plan::new(study.projection(), started).expect("an order");
-        let state = State::new(&plan, "en");
-        let mut page = Self { plan, state, events: vec![], prepared: vec![], now_ms: 0.0 };
-        page.send(Input::Opened(Client::default()));
-        page.send(Input::Measured(mimique_study::Display {
-            viewport: [1600, 900],
-            device_pixel_ratio: 1.0,
-            refresh_hz: Some(60.0),
-            backend: Some("webgpu".to_owned()),
-            desktop: true,
-            fullscreen: true,
-        }));
-        page
-    }
-
-    fn send(&mut self, input: Input) {
-        let mut inputs = vec![input];
-        while let Some(input) = inputs.pop() {
-            self.now_ms += 10.0;
-            let state = std::mem::take(&mut self.state);
-            let (state, effects) = update(&self.plan, state, input, self.now_ms);
-            self.state = state;
-            for effect in effects {
-                match effect {
-                    Effect::Store(event) => self.events.push(event),
-                    Effect::PrepareClips(clips) => {
-                        self.prepared.extend(clips.clone());
-                        let ready = |clip| Input::ClipPrepared { clip };
-                        inputs.extend(clips.into_iter().map(ready));
-                    }
-                    Effect::Flush => {
-                        inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
-                    }
-                    _ => {}
-                }
-            }
-        }
-    }
-
-    fn step(&self) -> Option<String> {
-        Some(self.plan.step(self.state.record.step)?.id.clone())
-    }
-
     /// Goes through the study; `hash` gives the weights that a trial's face has on this device.
     fn go(&mut self, hash: impl Fn(&str) -> String) -> Vec<String> {
         let mut played = Vec::new();
