@@ -1,6 +1,8 @@
 //! Active schedules of pairs: simulated people go through them, worths come back, and pairs whose answer is known are
 //! asked about less often.
 
+#[path = "support/preregistered.rs"]
+mod preregistered;
 #[path = "support/results.rs"]
 mod results;
 #[path = "support/simulated.rs"]
@@ -8,10 +10,9 @@ mod simulated;
 
 use std::collections::BTreeMap;
 
-use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Simulation, power, preregistration,
-};
+use mimique_analysis::{Language, Parameters, PowerOptions, Simulation, power};
 use mimique_study::Study;
+use preregistered::preregistered;
 use results::{careful, report, text};
 use serde_json::{Value, json};
 use simulated::simulated_export;
@@ -124,14 +125,7 @@ fn the_preregistration_says_how_pairs_are_chosen() {
         (Language::English, "spanning tree of greatest expected information"),
         (Language::French, "l’arbre couvrant de plus grande information attendue"),
     ] {
-        let text = preregistration(&Preregistration {
-            study: &study,
-            config_hash: "hash",
-            power: &found,
-            parameters: &parameters,
-            language,
-            curve: None,
-        });
+        let text = preregistered(&study, &parameters, &found, language);
         assert!(text.contains(says), "{text}");
     }
 }

@@ -1,18 +1,18 @@
 //! Choices between two clips, from people with worths to the report: what is planted is found again, the words name
 //! what was computed, other programs find the same numbers.
 
+#[path = "support/preregistered.rs"]
+mod preregistered;
 #[path = "support/simulated.rs"]
 mod simulated;
 
 use std::path::Path;
 use std::process::Command;
 
-use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Report, Simulation, analyze, power,
-    preregistration,
-};
+use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
 use mimique_stats::Table;
 use mimique_study::{Severity, Study};
+use preregistered::preregistered;
 use serde_json::{Value, json};
 use simulated::simulated_export;
 
@@ -247,14 +247,7 @@ fn power_counts_choices_and_the_preregistration_says_the_test_that_decides() {
         (Language::English, "decides: equal worths in the Bradley-Terry model"),
         (Language::French, "décide : égalité des valeurs dans le modèle de Bradley-Terry"),
     ] {
-        let text = preregistration(&Preregistration {
-            study: &study,
-            config_hash: "hash",
-            power: &found,
-            parameters: &parameters,
-            language,
-            curve: None,
-        });
+        let text = preregistered(&study, &parameters, &found, language);
         assert!(text.contains(words), "{text}");
         assert!(!text.contains("Friedman test on person means"), "{text}");
     }

@@ -3,16 +3,17 @@
 
 #[path = "support/planted.rs"]
 mod planted;
+#[path = "support/preregistered.rs"]
+mod preregistered;
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
-use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, analyze, power, preregistration,
-};
+use mimique_analysis::{Language, Parameters, PowerOptions, analyze, power};
 use mimique_stats::Table;
 use mimique_study::{Generalise, Severity, Study};
 use mimique_test_support::Random;
 use planted::{answered, export_of_passes};
+use preregistered::preregistered;
 use serde_json::{Value, json};
 use support::{Raters, demo_study, export};
 
@@ -96,14 +97,7 @@ fn a_hypothesis_about_other_clips_is_decided_by_the_mixed_model() {
         (Language::English, "decides: likelihood ratio test of a cumulative link mixed model"),
         (Language::French, "décide : test du rapport de vraisemblance d’un modèle mixte"),
     ] {
-        let text = preregistration(&Preregistration {
-            study: &study,
-            config_hash: "hash",
-            power: &found,
-            parameters: &parameters,
-            language,
-            curve: None,
-        });
+        let text = preregistered(&study, &parameters, &found, language);
         assert!(text.contains(words), "{text}");
     }
 }

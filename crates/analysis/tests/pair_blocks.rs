@@ -1,14 +1,14 @@
 //! Blocks of pairs, from people with worths to report, power and preregistration.
 
+#[path = "support/preregistered.rs"]
+mod preregistered;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Report, Simulation, analyze, power,
-    preregistration,
-};
+use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
 use mimique_stats::Table;
 use mimique_study::Study;
+use preregistered::preregistered;
 use serde_json::Value;
 use simulated::simulated_export;
 
@@ -134,14 +134,7 @@ fn power_is_that_of_the_dealt_pairs_and_the_preregistration_says_how_they_are_de
         (Language::English, "Each participant is shown 12 of them"),
         (Language::French, "Chaque participant en voit 12"),
     ] {
-        let text = preregistration(&Preregistration {
-            study: &study,
-            config_hash: "hash",
-            power: &found,
-            parameters: &parameters,
-            language,
-            curve: None,
-        });
+        let text = preregistered(&study, &parameters, &found, language);
         assert!(text.contains(words) && text.contains("36 pai"), "{text}");
     }
 }

@@ -1,5 +1,7 @@
 //! Panels, from people who know the reference to report, screening, scripts, power and preregistration.
 
+#[path = "support/preregistered.rs"]
+mod preregistered;
 #[path = "support/simulated.rs"]
 mod simulated;
 
@@ -7,12 +9,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Report, Simulation, analyze, power,
-    preregistration,
-};
+use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
 use mimique_stats::Table;
 use mimique_study::{PanelBlock, Study};
+use preregistered::preregistered;
 use serde_json::Value;
 use simulated::simulated_export;
 
@@ -232,14 +232,7 @@ fn power_is_that_of_every_page_and_the_preregistration_names_the_rule() {
         (Language::English, ["6 pages in all", "BS.1534-3", "slow is the anchor"]),
         (Language::French, ["6 pages en tout", "BS.1534-3", "slow est l’ancre"]),
     ] {
-        let text = preregistration(&Preregistration {
-            study: &study,
-            config_hash: "hash",
-            power: &found,
-            parameters: &parameters,
-            language,
-            curve: None,
-        });
+        let text = preregistered(&study, &parameters, &found, language);
         assert!(words.iter().all(|words| text.contains(words)), "{text}");
     }
 }
