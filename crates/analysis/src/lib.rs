@@ -63,8 +63,8 @@ pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates,
-    Interaction, NumberAnswer, Parameters, ParametersError, PerceivedScale, Rating, Recognition,
-    SimulatedSession, Simulation, Template, TemplatePart, TemplatePeople, Times,
+    Interaction, NumberAnswer, PairChoices, Parameters, ParametersError, PerceivedScale, Rating,
+    Recognition, SimulatedSession, Simulation, Template, TemplatePart, TemplatePeople, Times,
 };
 pub use trials::error::{ExportError, StimuliError};
 pub use trials::reason::Reason;

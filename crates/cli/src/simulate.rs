@@ -6,11 +6,10 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use mimique_analysis::{Parameters, Simulation};
+use mimique_analysis::{Parameters, SimulatedSession, Simulation};
 use mimique_server::export::{Exported, Format, Unstored};
 use mimique_stats::Table;
 use mimique_study::Study;
-use rayon::prelude::*;
 
 use crate::output;
 use crate::study_file::load;
@@ -103,14 +102,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             Some(path) => path.display().to_string(),
             None => place(),
         })?;
-    let sessions: Vec<_> = (1..=args.participants)
-        .into_par_iter()
-        .map(|participant| {
-            let session = simulation.session(participant)?;
-            anyhow::Ok(writer.write(&session.started, &session.events)?)
-        })
-        .collect::<anyhow::Result<_>>()
-        .with_context(place)?;
+    let written = |session: SimulatedSession| writer.write(&session.started, &session.events);
+    let sessions = simulation.sessions(args.participants, written).with_context(place)?;
+    let sessions: Vec<_> = sessions.into_iter().collect::<Result<_, _>>().with_context(place)?;
     let exported = writer.join(sessions)?;
     let (participants, rows) = (exported.participants, exported.rows);
     let written = write(&args.out, exported, &parameters)?;

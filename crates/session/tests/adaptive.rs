@@ -140,6 +140,18 @@ fn both_clips_that_may_come_next_are_made_ready_while_one_is_shown() {
 }
 
 #[test]
+fn levels_are_made_ready_before_their_block_is_reached() {
+    let study = study(|_| {});
+    let page = run(&study, 0.5);
+    // On the page before the block, and in each of its two breaks.
+    let steps: Vec<&Value> = page.readied.iter().map(|request| &request["step"]).collect();
+    assert_eq!(steps, ["limit/1", "limit/12", "limit/23"]);
+    for request in &page.readied {
+        assert!(page.asked_for.contains(request), "what the level is chosen by: {request}");
+    }
+}
+
+#[test]
 fn a_reload_goes_on_at_the_same_level_of_the_same_track() {
     let study = study(|_| {});
     let whole = run(&study, 0.5);

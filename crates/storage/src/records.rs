@@ -163,6 +163,8 @@ pub struct SessionState {
     pub participant: u64,
     /// Version of the study.
     pub config_hash: String,
+    /// `pilot` or `live`.
+    pub stage: String,
     /// The participant's condition; none in a study without.
     pub condition: Option<String>,
     /// How it stands by its events, whatever the time is.

@@ -32,7 +32,7 @@ pub use instant::{instant_ms, iso_time};
 pub use order::{
     Draw, NoOrder, OrderError, OrderedItem, Sides, Stream, drawn_condition, option_order, order,
 };
-pub use pair_drawing::{DrawnPairs, OwnChoice, PairCount, PairRequest};
+pub use pair_drawing::{DrawnPairs, OwnChoice, PairCount, PairCounts, PairRequest};
 pub use pairs::AnswerOfPair;
 pub use practice::right_answers;
 pub use projection::StudyProjection;

@@ -25,6 +25,51 @@ pub struct PairCount {
     pub answers: [u64; 3],
 }
 
+/// How often each of two items was chosen over the other, in the order of the items.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PairCounts(pub Vec<PairCount>);
+
+impl PairCounts {
+    /// Adds choices between the items of a pair.
+    pub fn add(&mut self, PairCount { items, answers }: &PairCount) {
+        let place = self.0.binary_search_by(|own| own.items.cmp(items));
+        match place {
+            Ok(at) => self.0[at].answers.iter_mut().zip(answers).for_each(|(own, new)| *own += new),
+            Err(at) => self.0.insert(at, PairCount { items: items.clone(), answers: *answers }),
+        }
+    }
+
+    /// Adds a choice: which of left and right was chosen, or neither.
+    pub fn chosen(&mut self, [left, right]: [&str; 2], chosen: Option<&str>) {
+        let mut items = [left, right].map(str::to_owned);
+        items.sort();
+        let answers = match chosen {
+            None => [0, 1, 0],
+            Some(chosen) if *chosen == items[0] => [1, 0, 0],
+            Some(_) => [0, 0, 1],
+        };
+        self.add(&PairCount { items, answers });
+    }
+
+    /// Adds a participant's answers to the pairs of a block with an active schedule.
+    pub fn add_own(&mut self, pairs: &DealtPairs, own: &[OwnChoice]) {
+        for OwnChoice { left, right, answer } in own {
+            let (Some(answer), Some(left), Some(right)) =
+                (answer.as_deref(), pairs.level(left), pairs.level(right))
+            else {
+                continue;
+            };
+            let chosen = match answer {
+                "left" => Some(left),
+                "right" => Some(right),
+                _ => None,
+            };
+            self.chosen([left, right], chosen);
+        }
+    }
+}
+
 /// What a participant answered to a pair.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OwnChoice {
@@ -60,7 +105,7 @@ pub struct PairRequest {
     pub own: Vec<OwnChoice>,
     /// Those of all others; none where no server tells them.
     #[serde(default)]
-    pub others: Vec<PairCount>,
+    pub others: PairCounts,
 }
 
 /// A batch of pairs.
@@ -78,11 +123,11 @@ impl PairRequest {
     /// The batch; empty where the block has fewer than two levels.
     pub fn draw(&self) -> DrawnPairs {
         let levels = &self.pairs.levels;
-        let (items, place) = (levels.len(), |clip: &str| self.place(clip));
+        let (items, place) = (levels.len(), |clip: &str| self.pairs.place(clip));
         let mut comparisons = Vec::new();
         let mut answers = 0;
         let item = |level: &str| levels.iter().position(|own| own == level);
-        for PairCount { items: [one, other], answers: [first, same, second] } in &self.others {
+        for PairCount { items: [one, other], answers: [first, same, second] } in &self.others.0 {
             let (Some(a), Some(b)) = (item(one), item(other)) else { continue };
             let count = first + same + second;
             answers += count;
@@ -139,11 +184,18 @@ impl PairRequest {
         };
         DrawnPairs { pairs: tree.into_iter().map(pair).collect(), answers, hash }
     }
+}
+
+impl DealtPairs {
+    /// Of an active schedule: the level of a clip.
+    fn level(&self, clip: &str) -> Option<&str> {
+        self.levels.get(self.place(clip)?[0]).map(String::as_str)
+    }
 
     /// Item and cell of a clip.
     fn place(&self, clip: &str) -> Option<[usize; 2]> {
-        let items = self.pairs.levels.len().max(1);
-        let place = self.pairs.clips.iter().position(|own| own == clip)?;
+        let items = self.levels.len().max(1);
+        let place = self.clips.iter().position(|own| own == clip)?;
         Some([place % items, place / items])
     }
 }
@@ -169,7 +221,7 @@ mod tests {
             batch,
             left: 9,
             own,
-            others,
+            others: PairCounts(others),
         }
     }
 

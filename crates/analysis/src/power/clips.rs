@@ -42,6 +42,8 @@ pub(crate) fn balanced_segments(clips: &[Clip]) -> Vec<String> {
 /// that stand for it.
 pub(crate) struct ScaledClips {
     pub clips: Vec<Clip>,
+    /// The clip of the study that each of them stands for.
+    pub originals: Vec<String>,
     pub stand_ins: BTreeMap<String, Vec<usize>>,
 }
 
@@ -50,7 +52,8 @@ pub(crate) struct ScaledClips {
 pub(crate) fn scaled(study: &Study, wanted: usize) -> ScaledClips {
     let own = study.clips();
     let order = balanced_segments(&own);
-    let mut result = ScaledClips { clips: Vec::new(), stand_ins: BTreeMap::new() };
+    let (clips, originals) = (Vec::new(), Vec::new());
+    let mut result = ScaledClips { clips, originals, stand_ins: BTreeMap::new() };
     let mut round = 1;
     while !own.is_empty() && result.clips.len() < wanted {
         for segment in &order {
@@ -66,6 +69,7 @@ pub(crate) fn scaled(study: &Study, wanted: usize) -> ScaledClips {
                     copy.segment = format!("{}+{round}", clip.segment);
                 }
                 result.clips.push(copy);
+                result.originals.push(clip.id.clone());
             }
         }
         round += 1;

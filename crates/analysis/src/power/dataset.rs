@@ -12,8 +12,11 @@ use mimique_study::{
 use serde_json::Value;
 
 use super::design::{Design, Step, has_conditions};
+use super::drawn_pairs::OwnPairs;
+use super::given::{Given, text};
 use crate::simulate::{
-    Asked, BEFORE_REPLAY_MS, ClipEffects, Companion, Model, Person, Raw, Way, as_json, eighths,
+    Asked, BEFORE_REPLAY_MS, ClipEffects, Companion, Model, PairChoices, Person, Raw, as_json,
+    eighths,
 };
 use crate::trials::export::{
     Answer, Beside, Export, Person as Who, Trial, exclude_people, why_left_out,
@@ -43,6 +46,8 @@ struct Data<'d> {
     /// Answers and trials before the exclusions, with the quickest answer of each trial.
     trials: Vec<(usize, Trial, Option<f64>)>,
     answers: Vec<(String, Answer)>,
+    /// What everybody so far chose in blocks whose pairs follow from answers.
+    choices: PairChoices,
 }
 
 impl<'d> Data<'d> {
@@ -68,14 +73,15 @@ impl<'d> Data<'d> {
             levels,
             trials: Vec::new(),
             answers: Vec::new(),
+            choices: PairChoices::new(),
         }
     }
 
     fn person(&mut self, clips: &ClipEffects, seed: u64, number: usize) {
         let walk = &self.design.walks[number - 1];
-        let condition = self.design.condition(number);
+        let (condition, slot) = self.design.condition_and_slot(number);
         let mut person = Person::new(self.model, clips, seed, number as u64, condition);
-        let trials = walk.iter().filter(|step| matches!(step, Step::Trial { .. })).count();
+        let trials = walk.iter().filter(|step| !matches!(step, Step::Page(_))).count();
         let leaves = person.fate.leaves_after.is_some_and(|after| after < trials);
         if person.fate.declines || (leaves && person.fate.withdraws) {
             return;
@@ -93,6 +99,7 @@ impl<'d> Data<'d> {
         let mut has_rows = !person.about.is_empty() || self.design.study.training.is_some();
         let mut earlier = person.about.clone();
         let mut runs = Runs::default();
+        let mut pairs = OwnPairs::new(self.design, slot);
         let mut done = 0;
         for step in walk {
             match step {
@@ -107,17 +114,34 @@ impl<'d> Data<'d> {
                     }
                 }
                 Step::Page(_) => {}
+                Step::Trial { .. } | Step::DrawnPair(_)
+                    if person.fate.leaves_after.is_some_and(|after| done >= after) =>
+                {
+                    break;
+                }
                 Step::Trial { clip, beside, block } => {
-                    if person.fate.leaves_after.is_some_and(|after| done >= after) {
-                        break;
-                    }
                     has_rows = true;
                     let shown = (*clip, *beside, block.as_str(), done);
-                    self.trial(&mut person, (&mut who, &mut runs), place, shown, &earlier);
+                    let own = (&mut who, &mut runs, &mut pairs);
+                    self.trial(&mut person, own, place, shown, &earlier);
                     done += 1;
+                }
+                Step::DrawnPair(block) => {
+                    let Some([left, right]) = pairs.next(block, &self.choices) else { continue };
+                    has_rows = true;
+                    let design = self.design;
+                    let copies = design.copies(&left).iter().zip(design.copies(&right));
+                    for (&clip, &right) in copies {
+                        let beside = Some(Companion { clip: right, left: false });
+                        let own = (&mut who, &mut runs, &mut pairs);
+                        let shown = (clip, beside, block.as_str(), done);
+                        self.trial(&mut person, own, place, shown, &earlier);
+                        done += 1;
+                    }
                 }
             }
         }
+        pairs.count(&mut self.choices);
         if !has_rows {
             return;
         }
@@ -134,7 +158,7 @@ impl<'d> Data<'d> {
     fn trial(
         &mut self,
         person: &mut Person<'_>,
-        (who, runs): (&mut Who, &mut Runs<'d>),
+        (who, runs, pairs): (&mut Who, &mut Runs<'d>, &mut OwnPairs<'d>),
         place: usize,
         (clip, beside, block, done): (usize, Option<Companion>, &str, usize),
         earlier: &Answers,
@@ -158,6 +182,13 @@ impl<'d> Data<'d> {
             if let Some(check) = &asked.question.attention_check {
                 let answer = raw.clone().map(|raw| as_json(asked, raw));
                 who.failed_checks += usize::from(!is_same(answer.as_ref(), &check.expected));
+            }
+            if asked.question.kind.compares_clips()
+                && let Some(beside) = beside
+            {
+                let answer = raw.clone().map(|raw| as_json(asked, raw));
+                let shown = [clip, beside.clip].map(|it| self.design.clips.originals[it].as_str());
+                pairs.answered(block, shown, answer.as_ref().and_then(Value::as_str));
             }
             let Some(raw) = raw else { continue };
             let rt_ms = needs.times.then(|| {
@@ -291,44 +322,6 @@ impl<'d> Data<'d> {
     }
 }
 
-/// An answer of a trial before it is kept.
-struct Given<'a> {
-    person: usize,
-    clip: usize,
-    asked: &'a Asked<'a>,
-    raw: &'a Raw,
-    rt_ms: Option<f64>,
-}
-
-impl Given<'_> {
-    /// The answer, or its part of a name, as the export has it; none where the part was not answered.
-    fn as_answer(&self, part: &str, trial: usize) -> Option<Answer> {
-        let (answer, correct, truth) = match (self.raw, &self.asked.way) {
-            (Raw::Option(option), Way::Recognised(recognised)) => {
-                let options = self.asked.question.kind.options();
-                let right = recognised.clips[self.clip].as_ref().map(|row| row.right);
-                (
-                    options[*option].value.clone(),
-                    right.map(|right| right == *option),
-                    right.map(|right| options[right].value.clone()),
-                )
-            }
-            (Raw::Json(Value::Object(parts)), _) => (text(parts.get(part)?), None, None),
-            _ => (text(&as_json(self.asked, self.raw.clone())), None, None),
-        };
-        Some(Answer {
-            person: self.person,
-            number: answer.parse().ok().filter(|number: &f64| number.is_finite()),
-            text: answer.into(),
-            correct,
-            truth: truth.map(Into::into),
-            rt_ms: self.rt_ms,
-            trial,
-            trace: None,
-        })
-    }
-}
-
 /// The answers of a page, its attention checks counted; none where no question is shown.
 fn page_answers(
     person: &mut Person<'_>,
@@ -359,11 +352,6 @@ fn numbers_about(study: &Study) -> impl Iterator<Item = String> {
     questions
         .filter(|question| question.kind.column_kind() == ColumnKind::Number)
         .map(|question| question.id.clone())
-}
-
-/// A cell as the export has it.
-pub(super) fn text(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 fn is_same(answer: Option<&Value>, expected: &Value) -> bool {

@@ -8,8 +8,8 @@ use mimique_study::Study;
 use mimique_study::columns::ASSIGNED_CONDITION;
 use serde_json::Value;
 
-use super::dataset::text;
 use super::design::Design;
+use super::given::text;
 use crate::Parameters;
 use crate::simulate::Simulation;
 use crate::trials::export::{Export, Trial};
@@ -24,10 +24,8 @@ fn study(name: &str) -> (Value, Study) {
 /// The tidy export of simulated sessions, as CSV.
 fn csv(study: &Study, hash: &str, parameters: &Parameters, seed: u64, people: u64) -> String {
     let simulation = Simulation::new(study, hash, parameters, seed).unwrap();
-    let sessions: Vec<_> = (1..=people)
-        .map(|number| simulation.session(number).unwrap())
-        .filter(|session| !session.events.is_empty())
-        .collect();
+    let mut sessions = simulation.sessions(people, |session| session).unwrap();
+    sessions.retain(|session| !session.events.is_empty());
     let records = sessions
         .iter()
         .map(|session| SessionRecord { started: &session.started, events: &session.events });
@@ -115,4 +113,53 @@ fn direct_answers_are_those_of_the_export() {
         assert!(read.flow.people_left_out.len() >= 2, "{:?}", read.flow);
         assert!(read.flow.trials_left_out.len() >= 3, "{:?}", read.flow);
     }
+}
+
+#[test]
+fn pairs_that_follow_from_answers_are_those_of_the_export() {
+    let (mut value, _) = study("pairs.json");
+    let blocks = value["components"].as_object_mut().unwrap().values_mut();
+    for block in blocks.filter(|block| block["type"] == "pairs") {
+        block["schedule"] = serde_json::json!({ "rule": "active", "perParticipant": 8 });
+    }
+    let study = Study::from_value(&value).unwrap();
+    let hash = mimique_study::config_hash(&value);
+    let mut parameters = Parameters::for_study(&study);
+    parameters.dropout = crate::Dropout { declined: 0.1, per_trial: 0.03, withdrawn: 0.3 };
+    let people = 25;
+    let design = Design::new(&study, &hash, people, None).unwrap();
+    let direct = design.answers(&design.model(&parameters), 3, people);
+    let text = csv(&study, &hash, &parameters, 3, people as u64);
+    let read = Export::read(&Table::parse(text.as_bytes()).unwrap(), &study).unwrap();
+    assert_eq!(direct.flow, read.flow);
+    assert!(direct.trials.len() > 120, "{}", direct.trials.len());
+    let pairs = |export: &Export| -> Vec<[String; 2]> {
+        let pair = |trial: &Trial| {
+            let beside = trial.beside.as_ref().unwrap();
+            [trial.stimulus.to_string(), beside.clip.to_string()]
+        };
+        export.trials.iter().map(pair).collect()
+    };
+    assert_eq!(pairs(&direct), pairs(&read));
+    // No hypothesis is about times: they are not drawn.
+    let told = |export: &Export, response: &str| -> Vec<(usize, usize, String)> {
+        let answers = export.answers[response].iter();
+        answers.map(|own| (own.person, own.trial, own.text.to_string())).collect()
+    };
+    for response in direct.answers.keys() {
+        assert!(told(&direct, response) == told(&read, response), "{response}");
+    }
+    // What others answered counts: whoever follows own answers alone is shown other pairs.
+    let alone = Simulation::new(&study, &hash, &parameters, 3).unwrap();
+    let drawn = |session: crate::SimulatedSession| {
+        let events = session.events.into_iter();
+        events
+            .filter(|event| event.body["type"] == "pairs_drawn")
+            .map(|event| event.body)
+            .next_back()
+    };
+    let together = alone.sessions(people as u64, drawn).unwrap();
+    let told = together[people - 1].as_ref().unwrap()["answers"].as_u64().unwrap();
+    assert!(told > 100, "the last is drawn under the answers of all before: {told}");
+    assert_ne!(together[people - 1], drawn(alone.session(people as u64).unwrap()));
 }

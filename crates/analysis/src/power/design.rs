@@ -13,6 +13,8 @@ use crate::trials::straight_lining;
 /// What participants go through, the same in every run.
 pub(crate) struct Design<'s> {
     pub study: &'s Study,
+    /// Hash of the study's file: with the seed it decides what is drawn.
+    pub config_hash: String,
     pub clips: ScaledClips,
     /// The components as pages carry them: blocks of pairs as the trials that they make.
     pub components: BTreeMap<String, Component>,
@@ -26,6 +28,8 @@ pub(crate) struct Design<'s> {
 pub(crate) enum Step {
     /// A trial: its clip, what is played beside it, its block's name.
     Trial { clip: usize, beside: Option<Companion>, block: String },
+    /// A pair that follows from the answers so far: its block.
+    DrawnPair(String),
     /// A page of questions.
     Page(String),
 }
@@ -63,6 +67,11 @@ impl<'s> Design<'s> {
             let mut sides = Sides::new(&projection, draw, &items);
             for item in items {
                 match item {
+                    OrderedItem::Trial { component, clip, .. }
+                        if clip.is_empty() && draws_pairs(&projection, &component) =>
+                    {
+                        walk.push(Step::DrawnPair(component));
+                    }
                     OrderedItem::Trial { component, clip, beside, panel, .. } => {
                         let beside = beside.map(|clip| (clip, false)).or_else(|| {
                             companion((&projection, &own_clips), &component, &clip, &mut sides)
@@ -98,18 +107,30 @@ impl<'s> Design<'s> {
             runs: straight_lining::responses(study),
             responses: study.hypotheses.iter().map(|each| each.response.clone()).collect(),
         };
-        Ok(Self { study, clips, components: projection.components, walks, conditions, needs })
+        let (components, config_hash) = (projection.components, config_hash.to_owned());
+        Ok(Self { study, config_hash, clips, components, walks, conditions, needs })
     }
 
-    /// The condition of a participant, numbered from 1.
-    pub(crate) fn condition(&self, number: usize) -> Option<&'s str> {
-        condition_and_slot(&self.conditions, number as u64).0
+    /// The condition of a participant, numbered from 1, and the slot in it.
+    pub(crate) fn condition_and_slot(&self, number: usize) -> (Option<&'s str>, u64) {
+        condition_and_slot(&self.conditions, number as u64)
+    }
+
+    /// The clips that stand for one of the study's.
+    pub(crate) fn copies(&self, clip: &str) -> &[usize] {
+        self.clips.stand_ins.get(clip).map_or(&[], Vec::as_slice)
     }
 
     /// The model of these parameters on the design's clips.
     pub(crate) fn model(&self, parameters: &'s Parameters) -> Model<'s> {
         Model::new(self.study, parameters, self.clips.clips.clone())
     }
+}
+
+/// Whether pairs of a block follow from the answers so far.
+fn draws_pairs(study: &StudyProjection, block: &str) -> bool {
+    let Some(Component::Trials(trials)) = study.components.get(block) else { return false };
+    trials.pairs.as_ref().is_some_and(|pairs| pairs.active > 0)
 }
 
 /// The clip that a block plays beside another, and whether it stands on the left.

@@ -11,6 +11,8 @@ mod dataset;
 #[cfg(test)]
 mod dataset_tests;
 mod design;
+mod drawn_pairs;
+mod given;
 mod table;
 
 use mimique_stats::{Adjustment, Outcome, proportion};

@@ -25,8 +25,11 @@ mod session;
 mod template;
 mod values;
 
+use std::collections::BTreeMap;
+
 use mimique_session::wire::{Event, SessionStarted};
-use mimique_study::{OrderError, Study};
+use mimique_study::{OrderError, PairCounts, Study};
+use rayon::prelude::*;
 
 pub use faces::{FacePart, FaceTemplates};
 pub(crate) use latent::ClipEffects;
@@ -60,7 +63,12 @@ pub struct SimulatedSession {
     pub started: SessionStarted,
     /// Its events; none of a session that was taken back.
     pub events: Vec<Event>,
+    /// What was chosen between two levels in blocks whose pairs follow from answers.
+    pub choices: PairChoices,
 }
+
+/// What people have chosen between two levels, by block of pairs that follow from answers.
+pub type PairChoices = BTreeMap<String, PairCounts>;
 
 impl<'s> Simulation<'s> {
     /// Refuses parameters that do not fit the study. `config_hash` is that of the study's file; with
@@ -78,9 +86,44 @@ impl<'s> Simulation<'s> {
         Ok(Self { model, clips, config_hash: config_hash.to_owned(), conditions, seed })
     }
 
-    /// The session of a participant, numbered from 1 as the server does. Conditions between
-    /// participants go round with the number.
+    /// The session of a participant, numbered from 1 as the server does, as if nobody had answered before. Conditions
+    /// between participants go round with the number.
     pub fn session(&self, participant: u64) -> Result<SimulatedSession, OrderError> {
+        self.session_after(participant, &PairChoices::new())
+    }
+
+    /// The sessions of participants 1 to `participants`, each handed to `made`. They are simulated beside each other,
+    /// unless pairs follow from the answers of all before.
+    ///
+    /// # Errors
+    /// [`OrderError`] where an order of trials cannot be made.
+    pub fn sessions<T: Send>(
+        &self,
+        participants: u64,
+        made: impl Fn(SimulatedSession) -> T + Sync,
+    ) -> Result<Vec<T>, OrderError> {
+        let study = self.model.study;
+        if study.pair_blocks().all(|(_, block)| block.schedule.active() == 0) {
+            let all = (1..=participants).into_par_iter();
+            return all.map(|participant| Ok(made(self.session(participant)?))).collect();
+        }
+        let mut others = PairChoices::new();
+        let in_turn = (1..=participants).map(|participant| {
+            let session = self.session_after(participant, &others)?;
+            for (block, own) in &session.choices {
+                let all = others.entry(block.clone()).or_default();
+                own.0.iter().for_each(|count| all.add(count));
+            }
+            Ok(made(session))
+        });
+        in_turn.collect()
+    }
+
+    fn session_after(
+        &self,
+        participant: u64,
+        others: &PairChoices,
+    ) -> Result<SimulatedSession, OrderError> {
         let (condition, slot) = condition_and_slot(&self.conditions, participant);
         let started = SessionStarted {
             session: String::new(),
@@ -93,8 +136,7 @@ impl<'s> Simulation<'s> {
             config_hash: self.config_hash.clone(),
             withdrawal_code: String::new(),
         };
-        let events = session::events(&self.model, &self.clips, self.seed, &started)?;
-        Ok(SimulatedSession { started, events })
+        session::session(&self.model, &self.clips, self.seed, started, others)
     }
 }
 

@@ -4,8 +4,8 @@ use mimique_session::flow::{Effect, Input, Plan, State, StepKind, update};
 use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, EventKind, PlayLog, SOUND_HEARD, SoundLog};
 use mimique_study::{
-    Calibration, Display, DrawnPairs, KindOfQuestion as _, Multilingual as _, OrderError,
-    PairRequest, TRACE_HZ,
+    Calibration, Component, Display, DrawnPairs, KindOfQuestion as _, Multilingual as _,
+    OrderError, PairRequest, TRACE_HZ, TrialsComponent,
 };
 use serde::Deserialize as _;
 
@@ -15,6 +15,7 @@ use super::levels::{Levels, Observer};
 use super::model::Model;
 use super::person::{BEFORE_REPLAY_MS, Person, Raw, Showing, as_json};
 use super::scaling::Judge;
+use super::{PairChoices, SimulatedSession};
 
 /// 5 January 2026, 9:00 UTC: when the first simulated session begins.
 const FIRST_SESSION_MS: f64 = 1_767_603_600_000.0;
@@ -38,14 +39,15 @@ const BROWSERS: [[&str; 3]; 5] = [
     ["Chrome", "143", "macOS"],
 ];
 
-/// The events of a session, from its opening to its end. None are left of a session that was taken
-/// back.
-pub(crate) fn events(
+/// A session from its opening to its end. No events are left of one that was taken back. `others` is what people before
+/// chose between two levels: the pairs of an active schedule are drawn under it.
+pub(crate) fn session(
     model: &Model<'_>,
     clips: &ClipEffects,
     seed: u64,
-    started: &SessionStarted,
-) -> Result<Vec<Event>, OrderError> {
+    started: SessionStarted,
+    others: &PairChoices,
+) -> Result<SimulatedSession, OrderError> {
     let plan = Plan::new(model.study.projection(), started.clone())?;
     let person =
         |seed| Person::new(model, clips, seed, started.participant, started.condition.as_deref());
@@ -53,13 +55,24 @@ pub(crate) fn events(
     let (person, practice) = (person(seed), person(seed ^ PRACTICE));
     let state = State::new(&plan, model.study.default_language());
     let levels = Levels::default();
-    let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels };
+    let page = Page { plan: &plan, state, events: Vec::new(), now_ms: 0.0, levels, others };
     let observer = Observer::new(model.study, model.parameters, seed, started.participant);
     let viewer = Viewer::new(model.study, model.parameters, seed, started.participant);
     let judge = Judge::new(model.study, model.parameters, seed, started.participant);
     let mut walk = Walk { model, seed, person, practice, observer, viewer, judge, page, trial: 0 };
     walk.go();
-    Ok(walk.page.events)
+    let Page { events, state, .. } = walk.page;
+    let mut choices = PairChoices::new();
+    // Of who took the answers back, nothing counts.
+    for (name, component) in plan.study.components.iter().filter(|_| !events.is_empty()) {
+        if let Component::Trials(TrialsComponent { pairs: Some(pairs), .. }) = component
+            && pairs.active > 0
+        {
+            let own = state.record.pair_choices(&plan, name);
+            choices.entry(name.clone()).or_default().add_own(pairs, &own);
+        }
+    }
+    Ok(SimulatedSession { started, events, choices })
 }
 
 /// Tells the seed of practice from that of the answers.
@@ -72,6 +85,7 @@ pub(super) struct Page<'p> {
     pub(super) events: Vec<Event>,
     pub(super) now_ms: f64,
     pub(super) levels: Levels,
+    pub(super) others: &'p PairChoices,
 }
 
 impl Page<'_> {
@@ -93,8 +107,9 @@ impl Page<'_> {
                         inputs.extend(clips.into_iter().map(|clip| Input::ClipPrepared { clip }));
                     }
                     Effect::ChooseLevel(request) => inputs.extend(self.levels.choose(&request)),
-                    // People are simulated beside each other: each one's pairs follow from own answers.
-                    Effect::DrawPairs(request) => inputs.extend(pairs_drawn(&request)),
+                    Effect::DrawPairs(request) => {
+                        inputs.extend(pairs_drawn(&request, self.others));
+                    }
                     Effect::Flush => {
                         inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
                     }
@@ -105,9 +120,10 @@ impl Page<'_> {
     }
 }
 
-/// Answers the effect `DrawPairs` as the page's module does.
-fn pairs_drawn(request: &serde_json::Value) -> Option<Input> {
-    let request = PairRequest::deserialize(request).ok()?;
+/// Answers the effect `DrawPairs` as the page's module does, and the server that tells it what others chose.
+fn pairs_drawn(request: &serde_json::Value, others: &PairChoices) -> Option<Input> {
+    let mut request = PairRequest::deserialize(request).ok()?;
+    request.others = others.get(&request.component).cloned().unwrap_or_default();
     let DrawnPairs { pairs, answers, hash } = request.draw();
     let (step, batch) = (request.step, request.batch);
     let event = EventKind::PairsDrawn { step, batch, pairs, answers, hash };

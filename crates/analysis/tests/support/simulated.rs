@@ -9,7 +9,7 @@ use serde_json::Value;
 
 /// The export of people who are simulated from the first page to the last.
 pub fn simulated_export(simulation: &Simulation<'_>, study: &Study, people: u64) -> String {
-    let sessions: Vec<_> = (1..=people).map(|number| simulation.session(number).unwrap()).collect();
+    let sessions = simulation.sessions(people, |session| session).unwrap();
     let records = sessions
         .iter()
         .map(|session| SessionRecord { started: &session.started, events: &session.events });

@@ -3,14 +3,13 @@
 use axum::Json;
 use axum::extract::{Path, State};
 use mimique_storage::StorageError;
-use mimique_study::{PairCount, PairsComponent};
+use mimique_study::{PairCount, PairCounts, PairsComponent};
 
 use super::sessions::token_hash;
 use crate::error::Error;
-use crate::researcher::dashboard::session_sums::PairSums;
 use crate::state::App;
 
-/// Choices of everybody else, in the same version of the study, between the levels of a block of pairs; none of a block
+/// Choices of everybody else, in the same version and stage of the study, between the levels of a block of pairs; none of a block
 /// that does not draw its pairs by them, and of a version that is not hosted any more. Whoever is deleted is not among
 /// them. They are as new as the sums of the dashboard.
 pub(crate) async fn counts(
@@ -30,9 +29,10 @@ pub(crate) async fn counts(
         return Ok(Json(Vec::new()));
     }
     let all = app.sums.of_study(&app.storage, &own.study_id).await?;
-    let mut counts = PairSums::default();
+    let mut counts = PairCounts::default();
     for (session, sums) in &all.sessions {
-        if session.key == own.key || session.config_hash != own.config_hash {
+        let counts_here = session.config_hash == own.config_hash && session.stage == own.stage;
+        if session.key == own.key || !counts_here {
             continue;
         }
         let pairs = sums.as_ref().and_then(|sums| sums.pairs.get(&component));

@@ -2,6 +2,7 @@
 
 use axum::http::StatusCode;
 use mimique_analysis::{Parameters, Simulation};
+use mimique_server::{HostedStudy, Stage};
 use mimique_study::{PairCount, Study};
 use serde_json::{Value, json};
 
@@ -28,6 +29,14 @@ pub async fn pages_are_told_what_others_answered(server: &TestServer) {
         (parameters.dropout.declined, parameters.dropout.per_trial) = (0.0, 0.0);
         let hash = mimique_study::config_hash(&file);
         let simulation = Simulation::new(&pairs, &hash, &parameters, 1).unwrap();
+        // A pilot's answers are not among those of the study itself.
+        let pilot = HostedStudy::new(file.clone(), Default::default(), Stage::Pilot).unwrap();
+        let server = server.restart_with(vec![pilot]).await;
+        let started = server.start_in("pairs", 1000 * u64::from(is_told) + 99).await;
+        assert_eq!(started.stage, "pilot");
+        for part in simulation.session(99).unwrap().events.chunks(50) {
+            server.stored(&started.session, part).await;
+        }
         let server = server.restart_with(vec![study::host(file)]).await;
         let mut tokens = Vec::new();
         let mut choices = 0;

@@ -6,8 +6,28 @@ use serde_json::{Value, json};
 use super::effect::Effect;
 use super::update::Transition;
 use crate::event::EventKind;
-use crate::record::FinishedStep;
-use mimique_study::{Component, KindOfQuestion as _, component_of};
+use crate::plan::Plan;
+use crate::record::{FinishedStep, Record};
+use mimique_study::{Component, KindOfQuestion as _, OwnChoice, component_of};
+
+impl Record {
+    /// What the participant has answered to the pairs of a block so far.
+    pub fn pair_choices(&self, plan: &Plan, component: &str) -> Vec<OwnChoice> {
+        let steps = plan.steps.iter().filter(|step| component_of(&step.id) == component);
+        let mut questions = steps.flat_map(|step| step.questions());
+        let choice = questions.find(|question| question.kind.compares_clips());
+        let own = |done: &FinishedStep| {
+            let (clip, beside) = (done.clip.as_ref()?, done.attempt.beside.as_ref()?);
+            let [left, right] =
+                if beside.left { [&beside.clip, clip] } else { [clip, &beside.clip] };
+            let answer = choice.and_then(|question| done.answers.get(&question.id)?.as_str());
+            let answer = answer.map(str::to_owned);
+            Some(OwnChoice { left: left.clone(), right: right.clone(), answer })
+        };
+        let done = self.finished.iter().filter(|done| component_of(&done.id) == component);
+        done.filter_map(own).collect()
+    }
+}
 
 impl Transition<'_> {
     /// Asks for the next batch, if the trial on the screen waits for it.
@@ -25,16 +45,7 @@ impl Transition<'_> {
             return;
         }
         let record = &self.state.record;
-        let choice = step.questions().iter().find(|question| question.kind.compares_clips());
-        let own = |done: &FinishedStep| {
-            let (clip, beside) = (done.clip.as_ref()?, done.attempt.beside.as_ref()?);
-            let [left, right] =
-                if beside.left { [&beside.clip, clip] } else { [clip, &beside.clip] };
-            let answer = choice.and_then(|question| done.answers.get(&question.id));
-            Some(json!({ "left": left, "right": right, "answer": answer }))
-        };
-        let done = record.finished.iter().filter(|done| component_of(&done.id) == component);
-        let own: Vec<Value> = done.filter_map(own).collect();
+        let own = record.pair_choices(self.plan, component);
         let batches = record.drawn.get(component).map_or(0, Vec::len);
         self.effects.push(Effect::DrawPairs(json!({
             "step": step.id,

@@ -20,6 +20,9 @@ pub enum Effect {
     /// `step`, `component`, `block`, whose draw it is (`seed`, `configHash`, `slot`), and `answers` so far: the side or
     /// null.
     ChooseLevel(Value),
+    /// Make the levels of an adaptive block ready, so that its first one is chosen at once: what QUEST+ expects of every
+    /// answer to every level takes its time. Holds what `ChooseLevel` holds; nothing is reported.
+    ReadyLevels(Value),
     /// Draw the next batch of pairs of an active schedule, by `mimique_study::PairRequest`; report by `PairsDrawn`. Holds
     /// the request but for the answers of all others.
     DrawPairs(Value),

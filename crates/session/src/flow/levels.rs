@@ -7,26 +7,42 @@ use super::effect::Effect;
 use super::needs::needs_now;
 use super::update::Transition;
 use crate::event::EventKind;
+use crate::plan::Step;
 use mimique_study::{Component, component_of};
 
 impl Transition<'_> {
-    /// Asks for the level of the trial on the screen, if it has none yet.
+    /// Asks for the level of the trial on the screen, if it has none yet; and has the levels of a block made ready while
+    /// the step before it stands there.
     pub(super) fn choose_level(&mut self) {
         let Some(step) = self.step() else { return };
+        if let Some(request) = self.level_request(step) {
+            self.effects.push(Effect::ChooseLevel(request));
+        }
+        let Some(next) = self.plan.step(self.state.record.step + 1) else { return };
+        if component_of(&next.id) == component_of(&step.id) {
+            return;
+        }
+        if let Some(request) = self.level_request(next) {
+            self.effects.push(Effect::ReadyLevels(request));
+        }
+    }
+
+    /// What the level of a trial of an adaptive block follows from.
+    fn level_request(&self, step: &Step) -> Option<Value> {
         let component = component_of(&step.id);
         let Some(Component::Adaptive(block)) = self.plan.study.components.get(component) else {
-            return;
+            return None;
         };
         // Before the session nobody's draw is known.
         if self.plan.started.config_hash.is_empty() {
-            return;
+            return None;
         }
         let record = &self.state.record;
         let own = record.finished.iter().filter(|done| component_of(&done.id) == component);
         let answers: Vec<Option<&Value>> =
             own.map(|done| done.answers.get(block.question())).collect();
         let started = &self.plan.started;
-        self.effects.push(Effect::ChooseLevel(json!({
+        Some(json!({
             "step": step.id,
             "component": component,
             "block": block.0,
@@ -34,7 +50,7 @@ impl Transition<'_> {
             "configHash": started.config_hash,
             "slot": started.slot(),
             "answers": answers,
-        })));
+        }))
     }
 
     /// The clips that may come next are made ready after those of the level on the screen. Who has gone on meanwhile

@@ -37,6 +37,9 @@ pub struct Page {
     pub events: Vec<Event>,
     /// Every clip that was asked for.
     pub prepared: Vec<String>,
+    /// What levels were made ready for, and what they were chosen for.
+    pub readied: Vec<Value>,
+    pub asked_for: Vec<Value>,
     now_ms: f64,
 }
 
@@ -44,7 +47,9 @@ impl Page {
     pub fn open(study: &Study, started: SessionStarted) -> Self {
         let plan = Plan::new(study.projection(), started).expect("an order");
         let state = State::new(&plan, "en");
-        let mut page = Self { plan, state, events: vec![], prepared: vec![], now_ms: 0.0 };
+        let (events, prepared) = (vec![], vec![]);
+        let (readied, asked_for, now_ms) = (vec![], vec![], 0.0);
+        let mut page = Self { plan, state, events, prepared, readied, asked_for, now_ms };
         page.send(Input::Opened(Client::default()));
         page.send(Input::Measured(Display {
             viewport: [1600, 900],
@@ -72,7 +77,11 @@ impl Page {
                         let ready = |clip| Input::ClipPrepared { clip };
                         inputs.extend(clips.into_iter().map(ready));
                     }
-                    Effect::ChooseLevel(request) => inputs.extend(chosen(&request)),
+                    Effect::ChooseLevel(request) => {
+                        inputs.extend(chosen(&request));
+                        self.asked_for.push(request);
+                    }
+                    Effect::ReadyLevels(request) => self.readied.push(request),
                     Effect::Flush => {
                         inputs.push(Input::Acknowledged { stored: self.events.len() as u64 });
                     }

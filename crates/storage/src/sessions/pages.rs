@@ -70,7 +70,7 @@ impl Storage {
         form: i64,
     ) -> Result<Vec<SessionState>, StorageError> {
         let rows = query(AssertSqlSafe(format!(
-            "SELECT s.session_key, s.participant, s.config_hash, s.assigned_condition, s.status, \
+            "SELECT s.session_key, s.participant, s.config_hash, s.stage, s.assigned_condition, s.status, \
              s.deleted_ms, {DUE_MS} AS due_ms, s.event_count, s.receipt_events, v.event_count AS summed_events, \
              v.receipt_events AS summed_receipt \
              FROM sessions s LEFT JOIN session_sums v \
@@ -104,6 +104,7 @@ fn session_state(row: &Row) -> Result<SessionState, StorageError> {
         key: row.get("session_key")?,
         participant: row.unsigned(TABLE, "participant")?,
         config_hash: row.get("config_hash")?,
+        stage: row.get("stage")?,
         condition: Some(condition).filter(|name| !name.is_empty()),
         standing: standing(&row.get::<String>("status")?)?,
         is_deleted: row.get::<Option<i64>>("deleted_ms")?.is_some(),

@@ -168,6 +168,7 @@ impl Engine {
             Effect::Flush => self.flush(),
             Effect::PrepareClips(clips) => self.prepare_clips(clips),
             Effect::ChooseLevel(request) => self.choose_level(request),
+            Effect::ReadyLevels(request) => clips::ready_levels(request),
             Effect::DrawPairs(request) => self.draw_pairs(request),
             Effect::PlayClips { clips, in_turn } => self.play(&clips, in_turn),
             Effect::StopClip => host::stop_clip(),

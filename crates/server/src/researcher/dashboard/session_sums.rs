@@ -6,7 +6,7 @@ use mimique_session::Record;
 use mimique_session::flow::{Plan, StepKind};
 use mimique_session::rows::TidyForm;
 use mimique_storage::{CountedEvent, SessionRecord, Storage, StorageError};
-use mimique_study::{PairCount, PairsComponent, Study, StudyProjection, component_of};
+use mimique_study::{PairCounts, PairsComponent, Study, StudyProjection, component_of};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tokio_stream::StreamExt as _;
@@ -39,36 +39,9 @@ pub(crate) struct SessionSums {
     pub checks: BTreeMap<String, [u64; 2]>,
     /// Choices between two levels, by block of pairs.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub pairs: BTreeMap<String, PairSums>,
+    pub pairs: BTreeMap<String, PairCounts>,
     /// Class of the device: the platform as the page names it.
     pub device: String,
-}
-
-/// Choices between two levels each.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PairSums(pub Vec<PairCount>);
-
-impl PairSums {
-    /// Adds choices between the levels of a pair.
-    pub fn add(&mut self, PairCount { items, answers }: &PairCount) {
-        let place = self.0.binary_search_by(|own| own.items.cmp(items));
-        match place {
-            Ok(at) => self.0[at].answers.iter_mut().zip(answers).for_each(|(own, new)| *own += new),
-            Err(at) => self.0.insert(at, PairCount { items: items.clone(), answers: *answers }),
-        }
-    }
-
-    /// Adds a choice: which of left and right was chosen, or neither.
-    fn chosen(&mut self, [left, right]: [&str; 2], chosen: Option<&str>) {
-        let mut items = [left, right].map(str::to_owned);
-        items.sort();
-        let answers = match chosen {
-            None => [0, 1, 0],
-            Some(chosen) if *chosen == items[0] => [1, 0, 0],
-            Some(_) => [0, 0, 1],
-        };
-        self.add(&PairCount { items, answers });
-    }
 }
 
 /// Counts the sessions of one version of a study.
