@@ -6,7 +6,7 @@ import { refreshPeriod } from "./clock.js";
 import { StageFailure } from "./failure.js";
 import { VideoLayer } from "./video.js";
 import { fetchPack } from "./packs.js";
-import { Playback } from "./playback.js";
+import { Playback, inTurn as inTurnLog } from "./playback.js";
 
 // Modules, scripts and shaders are served under the hash of all of them.
 const renderer = /\/assets\/([0-9a-f]+)\//.exec(import.meta.url)?.[1] ?? "";
@@ -102,25 +102,39 @@ class Stage {
     const parts = [{ stage: this, clip }, ...others];
     if (parts.some(({ stage }) => stage.#playback)) throw new Error("stage: a clip is playing; stop it first");
     const shown = parts.map((part) => part.clip);
-    const sound = heard ? clip.sound : undefined;
-    const turns = [];
-    let lasts = 0;
-    for (const { duration_ms: own } of shown) {
-      turns.push({ fromMs: lasts, untilMs: lasts + own, isLast: turns.length === shown.length - 1 });
-      lasts = inTurn ? lasts + own : Math.max(lasts, own);
-    }
-    const playback = new Playback(parts.map(({ stage, clip }, k) => stage.#part(clip, inTurn ? turns[k] : null)), sound, told);
-    for (const { stage } of parts) stage.#playback = playback;
+    const turns = inTurn ? parts.map((part) => [part]) : [parts];
+    const lasts = turns.map((turn) => Math.max(...turn.map((part) => part.clip.duration_ms)));
+    const sounds = turns.map((turn) => (heard ? turn[0].clip.sound : undefined));
+    const playbacks = turns.map((turn, k) => {
+      const before = lasts.slice(0, k).reduce((sum, ms) => sum + ms, 0);
+      const isLast = k === turns.length - 1;
+      const each = told && { frame: (now, ms) => told.frame(now, before + ms), end: (now) => isLast && told.end(now) };
+      return new Playback(turn.map(({ stage, clip }) => stage.#part(clip)), sounds[k], each);
+    });
+    const plays = (playback) => parts.forEach(({ stage }) => (stage.#playback = playback));
+    plays(playbacks[0]);
+    const logs = [];
+    const heardLogs = [];
     try {
-      for (const { stage, clip } of parts) await stage.#ready(clip);
-      const log = await playback.run(lasts);
-      if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
+      // What waits for its turn stands at its first frame.
+      if (inTurn) for (const { stage, clip } of parts) await stage.show(clip.clip, 0);
+      for (const [k, turn] of turns.entries()) {
+        plays(playbacks[k]);
+        for (const part of parts) part.stage.#wait(!turn.includes(part));
+        for (const { stage, clip } of turn) await stage.#ready(clip);
+        const log = await playbacks[k].run(lasts[k]);
+        logs.push(log);
+        if (sounds[k]) heardLogs.push(sounds[k].log(log.onset_ms));
+        if (log.failure) for (const { stage } of parts) stage.#fail(log.failure);
+        if (log.aborted !== null) break;
+      }
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
       for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
-      return { ...this.#log(shown, log), sound: sound?.log(log.onset_ms) };
+      return { ...this.#log(shown, inTurnLog(logs, lasts)), sound: ofAll(heardLogs) };
     } catch (error) {
       for (const { stage } of parts) stage.#fail(error.message);
-      return this.#log(shown, playback.log(error.message));
+      logs.push(playbacks[logs.length].log(error.message));
+      return this.#log(shown, inTurnLog(logs, lasts));
     } finally {
       for (const { stage, clip } of parts) {
         stage.#playback = null;
@@ -130,11 +144,10 @@ class Stage {
     }
   }
 
-  // What a play does of this stage's clip; `turn`: its share of a play in turn (fromMs, untilMs, isLast).
-  #part(clip, turn) {
+  // What a play does of this stage's clip.
+  #part(clip) {
     if (clip.video) return { clock: this.#video.clock(clip) };
-    const draw = (timeMs) => this.#draw(clip, timeMs);
-    return turn ? { draw, ...turn, wait: (waits) => this.#wait(waits) } : { draw };
+    return { draw: (timeMs) => this.#draw(clip, timeMs) };
   }
 
   // style.css fades what waits for its turn.
@@ -297,6 +310,13 @@ class Stage {
       ...(more.length > 0 && { panel: shown.map(({ clip, provenance, weights_hash }) => ({ clip, provenance, weights_hash })) }),
     };
   }
+}
+
+// What was heard of clips in turn: the first that was not played, else the one farthest from its frames.
+function ofAll(sounds) {
+  const off = ({ offset_ms: offset, delay_ms: delay }) => Math.abs((offset ?? 0) - delay);
+  const farthest = (one, other) => (off(other) > off(one) ? other : one);
+  return sounds.find(({ status }) => status !== "played") ?? (sounds.length > 0 ? sounds.reduce(farthest) : undefined);
 }
 
 // Waits until the browser has given a lost WebGL context back.

@@ -1,10 +1,11 @@
-// One play of a clip, or of several in step or in turn, in the display's clock, and its log.
+// One play of a clip, or of several in step, in the display's clock, and its log; and such logs put one behind the other,
+// of clips in turn.
 //
 // Each animation frame is told the time at which the display's frame began; the picture drawn in it
 // is the clip at (that time - the first frame's time). A frame is late when it began more than 1.5
 // refresh periods after the one before. The first is one that the display began after the play: on a page
 // that was busy, the frame that it is told of may have begun long before. Where one of several is a video,
-// the video sets the time; of a video alone the log has its own frames.
+// the video sets the time, the first of several videos; of a video alone the log has its own frames.
 import { refreshPeriod } from "./clock.js";
 
 const LATE = 1.5;
@@ -15,12 +16,25 @@ const SILENT_MS = 10_000;
 // About what a video that is loaded takes from being started to its first frame.
 const VIDEO_START_MS = 30;
 
-// Before its turn a clip stands at its first frame, after it at its last.
-function drawAt(part, ms) {
-  if (!part.wait) return part.draw(ms);
-  const { fromMs, untilMs, isLast } = part;
-  part.wait(ms < fromMs || (ms >= untilMs && !isLast));
-  return part.draw(Math.min(Math.max(ms, fromMs), untilMs) - fromMs);
+/// The logs of clips in turn as one; `durationsMs`: how long each clip is, in the log they follow each other.
+export function inTurn(logs, durationsMs) {
+  const last = logs[logs.length - 1];
+  const most = (name) => Math.max(...logs.map((log) => log[name]));
+  let before = 0;
+  const frames = logs.flatMap((log, k) => {
+    const own = log.frames.map(([now, ms, late]) => [now, before + ms, late]);
+    before += durationsMs[k];
+    return own;
+  });
+  return {
+    ...last,
+    onset_ms: logs[0].onset_ms,
+    end_ms: last.end_ms ?? logs.findLast((log) => log.end_ms !== null)?.end_ms ?? null,
+    frames,
+    late: logs.reduce((sum, log) => sum + log.late, 0),
+    longest_ms: most("longest_ms"),
+    drift_ms: most("drift_ms"),
+  };
 }
 
 export class Playback {
@@ -28,6 +42,8 @@ export class Playback {
   #sound;
   #told;
   #clock;
+  // Of further videos.
+  #followers;
   #drift = 0;
   #drawn = new Map();
   #frames = [];
@@ -37,14 +53,13 @@ export class Playback {
   #failure = null;
   #finish = null;
 
-  /// `parts`: {draw(clipMs): whether the frame goes to the display} each, or {clock: a video's}. In turn, each
-  /// has fromMs and untilMs, its share of the play, isLast, and wait(whether it is not its turn). `sound`: heard with the first frame. `told`: {frame(now, ms), end(now)} in each frame's
-  /// callback.
+  /// `parts`: {draw(clipMs): whether the frame goes to the display} each, or {clock: a video's}. `sound`: heard with the
+  /// first frame. `told`: {frame(now, ms), end(now)} in each frame's callback.
   constructor(parts, sound, told) {
     this.#parts = parts;
     this.#sound = sound;
     this.#told = told;
-    this.#clock = parts.find((part) => part.clock)?.clock ?? null;
+    [this.#clock = null, ...this.#followers] = parts.flatMap((part) => part.clock ?? []);
   }
 
   /// Plays from 0 to `durationMs`; resolves with the log.
@@ -60,14 +75,18 @@ export class Playback {
       const due = (this.#aborted === null && (await this.#sound?.start())) || 0;
       // A video takes some time to start, which nobody knows beforehand.
       if (due && this.#clock) await new Promise((resolve) => setTimeout(resolve, due - VIDEO_START_MS - performance.now()));
-      if (this.#aborted === null) await this.#clock?.start();
+      if (this.#aborted === null) await Promise.all(this.#clocks().map((clock) => clock.start()));
       if (this.#aborted === null) await new Promise((resolve) => this.#loop(durationMs, due, resolve));
     } finally {
       this.#sound?.stop();
-      this.#clock?.stop();
+      for (const clock of this.#clocks()) clock.stop();
       document.removeEventListener("visibilitychange", onHidden);
     }
     return this.log(this.#aborted);
+  }
+
+  #clocks() {
+    return this.#clock ? [this.#clock, ...this.#followers] : [];
   }
 
   /// Ends the play; the log keeps the first reason.
@@ -106,16 +125,21 @@ export class Playback {
 
   // Shows every part at `ms`; the clip time of the frame that this completes, or null. A part whose
   // adapter is busy is drawn in a later frame of the display, before the other one is drawn again.
-  #show(ms) {
+  #show(ms, now) {
     const video = this.#clock?.takeFrame() ?? null;
+    for (const follower of this.#followers) follower.takeFrame();
+    const followed = this.#followers.map((follower) => follower.at(now));
+    if (followed.includes(null)) return null;
     if (this.#parts.length === 1 && this.#clock) return video;
     for (const part of this.#parts) {
-      if (!part.clock && !this.#drawn.has(part) && drawAt(part, ms)) this.#drawn.set(part, ms);
+      if (!part.clock && !this.#drawn.has(part) && part.draw(ms)) this.#drawn.set(part, ms);
     }
     const times = [...this.#drawn.values()];
     if (times.length < this.#parts.filter((part) => !part.clock).length) return null;
     // Between two frames of a video the drawn clip goes on.
     if (video !== null) times.push(video);
+    if (followed.length > 0) times.push(this.#clock.at(now), ...followed);
+    if (times.length === 0) return ms;
     this.#drift = Math.max(this.#drift, Math.max(...times) - Math.min(...times));
     this.#drawn.clear();
     return ms;
@@ -150,7 +174,7 @@ export class Playback {
       const clipMs = Math.min(time, durationMs);
       let shown;
       try {
-        shown = this.#show(clipMs);
+        shown = this.#show(clipMs, now);
         if (shown !== null) {
           const since = frames.length === 0 ? 0 : now - frames[frames.length - 1][0];
           frames.push([now, shown, since > LATE * this.#refreshMs ? 1 : 0]);

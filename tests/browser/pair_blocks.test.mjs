@@ -18,6 +18,7 @@ const study = small("duels", {
     { id: "better", type: "comparison", prompt: text("Which is better?"), allowSame: true },
     { id: "why", type: "shortText", prompt: text("Why?"), required: false },
   ],
+  training: { clips: ["joy2.recorded"], beside: { "joy2.recorded": "joy2.box" }, show: "inTurn", questions: ["better"], answers: { "joy2.recorded": { better: "left" } }, feedback: true },
   components: { duels: { type: "pairs", question: "better", reasons: "why", show: "inTurn" } },
   sequence: { order: "random", components: ["duels"] },
   stimuli: stimuli(
@@ -81,11 +82,14 @@ test("pair blocks: each two methods in turn, left and right, in the export", { s
       await go(page, "keyboard");
       here = await leave(page, here, 60_000);
     }
-    assert.equal(trials, 3);
+    assert.equal(trials, 4, "one for practice");
     assert.deepEqual(browser.errors, [], "the console is clean");
 
-    const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"]))
-      .filter((row) => row.trial_type === "trial" && row.response_id === "better");
+    const all = parse(mimique(["export", "--database", server.database, "--format", "csv"]));
+    const [practised] = all.filter((row) => row.trial_type === "training");
+    assert.deepEqual([practised.stimulus, practised.beside, practised.beside_side], ["joy2.recorded", "joy2.box", "right"]);
+    assert.ok(Number(practised.rt) > 7_500, `in turn as well: ${practised.rt} ms`);
+    const rows = all.filter((row) => row.trial_type === "trial" && row.response_id === "better");
     assert.equal(rows.length, 3);
     const pairs = rows.map((row) => [row.item_left, row.item_right].sort().join(" "));
     assert.deepEqual(pairs.sort(), ["box lsts", "box recorded", "lsts recorded"]);

@@ -19,9 +19,12 @@ const unable = skip(!executable && "Chromium not found");
 const cue = [{ fromS: 0, toS: 30, text: { en: "I have won!", fr: "J’ai gagné !" } }];
 const study = small("sound", {
   sound: { captions: "offered", check: { rounds: 1, correct: 1, attempts: 2, text: text("Headphones, please.") } },
-  questions: [{ id: "rating", prompt: text("How strong?"), type: "likert", numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") }],
-  components: { faces: trials(["joy.real.own", "joy.real.later", "joy.real.other", "joy.real.none"], ["rating"]) },
-  sequence: { order: "fixed", components: ["faces"] },
+  questions: [{ id: "goes", type: "comparison", prompt: text("Which sound goes with the face?") }, { id: "rating", prompt: text("How strong?"), type: "likert", numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") }],
+  components: {
+    faces: trials(["joy.real.own", "joy.real.later", "joy.real.other", "joy.real.none"], ["rating"]),
+    turns: { type: "pairs", compare: "sound", levels: ["other", "own"], within: ["segment"], show: "inTurn", question: "goes" },
+  },
+  sequence: { order: "fixed", components: ["faces", "turns"] },
   exclusions: { soundOffsetMs: 45, soundNotHeard: true },
   stimuli: {
     avatars: { head: { builtin: { seed: 1, vertices: 2000 } } },
@@ -149,6 +152,13 @@ test("sound: checked by keyboard, heard with the first frame, late and mismatche
       });
       await rate(page, here);
     }
+    // Each of two in turn with its own sound: the captions are those of the one that plays.
+    let spoken = null;
+    const pair = await trial(page, async () => {
+      await page.getByText("I have won!").waitFor({ timeout: 8_000 });
+      spoken = await page.evaluate(() => [...document.querySelectorAll(".stage-frame.pair canvas")].findIndex((canvas) => !canvas.hasAttribute("data-waiting")));
+    });
+    await rate(page, pair);
     await ends(page);
 
     // A browser that cannot decode: the clip is offered once more, then the trial goes on and says so.
@@ -175,7 +185,11 @@ test("sound: checked by keyboard, heard with the first frame, late and mismatche
       rows = parse(mimique(["export", "--format", "csv", "--study", "sound", "--database", server.database]));
       return rows.filter(({ trial_type, response_id }) => trial_type === "trial" && response_id === "rating").length === 5;
     });
-    const rated = rows.filter(({ trial_type }) => trial_type === "trial");
+    const rated = rows.filter(({ trial_type, response_id }) => trial_type === "trial" && response_id === "rating");
+    const inTurn = rows.find(({ response_id }) => response_id === "goes");
+    assert.equal(inTurn.sound_status, "played");
+    assert.ok(Math.abs(Number(inTurn.sound_offset_ms)) < 100, `in turn: offset ${inTurn.sound_offset_ms} ms`);
+    assert.equal([inTurn.item_left, inTurn.item_right][spoken], "own", "the words came with their own face");
     const of = (id) => rated.find(({ stimulus, language }) => stimulus === id && language === "en");
     const [own, later, other, none] = ["own", "later", "other", "none"].map((name) => of(`joy.real.${name}`));
     for (const [row, delay] of [[own, 0], [later, 120], [other, 0]]) {

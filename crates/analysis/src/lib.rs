@@ -56,8 +56,9 @@ pub mod components {
 
 pub use language::Language;
 pub use power::{
-    Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint, Rate, no_effect, power,
-    power_csv, power_curve, power_markdown, power_runs,
+    BlockPrecision, Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint,
+    PrecisionPoint, Rate, Told, no_effect, power, power_csv, power_curve, power_markdown,
+    power_runs, precision_csv, precision_markdown,
 };
 pub use preregistration::{Preregistration, preregistration};
 pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};

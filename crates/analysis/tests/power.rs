@@ -1,7 +1,10 @@
 //! Power against what is known: the false positives of tests that take trials for independent, and the
 //! power of a test whose distribution is known.
 
-use mimique_analysis::{Parameters, Power, PowerOptions, Preregistration, power, preregistration};
+use mimique_analysis::{
+    Language, Parameters, Power, PowerOptions, PrecisionPoint, Preregistration, power,
+    power_markdown, power_runs, precision_csv, preregistration,
+};
 use mimique_study::{StraightLining, Study};
 use serde_json::Value;
 
@@ -165,10 +168,10 @@ fn without_an_effect_in_the_parameters_nothing_is_called_power() {
 
     let result = power(&study, &hash, &parameters, &options(&[10], 2), &|| {}).unwrap();
     let note = "hold no effect of its factors on its response";
-    let table = mimique_analysis::power_markdown(&result, mimique_analysis::Language::English);
+    let table = power_markdown(&result, Language::English);
     assert_eq!(table.matches(note).count(), 3);
     assert!(table.contains("**HY**\n\nThe parameters hold no effect"), "{table}");
-    let curve = mimique_analysis::power_curve(&result, mimique_analysis::Language::English);
+    let curve = mimique_analysis::power_curve(&result, Language::English);
     assert_eq!(curve.matches("no effect in the parameters").count(), 3);
 }
 
@@ -223,7 +226,7 @@ fn preregistration_says_what_the_file_says() {
             config_hash: &hash,
             power: &power,
             parameters: &parameters,
-            language: mimique_analysis::Language::from_code(language).unwrap(),
+            language: Language::from_code(language).unwrap(),
             curve: Some("curve.svg"),
         });
         for part in words.into_iter().chain([hash.as_str(), "](curve.svg)"]) {
@@ -257,7 +260,7 @@ fn a_preregistration_says_the_conditions_between_participants() {
         config_hash: &hash,
         power: &power,
         parameters: &parameters,
-        language: mimique_analysis::Language::from_code("en").unwrap(),
+        language: Language::from_code("en").unwrap(),
         curve: None,
     });
     for part in [
@@ -270,4 +273,94 @@ fn a_preregistration_says_the_conditions_between_participants() {
     ] {
         assert!(text.contains(part), "{part}\n{text}");
     }
+}
+
+/// The precision of the one block of a study of `study-config`, with so many people.
+fn precision_of(
+    name: &str,
+    change: impl FnOnce(&mut Value),
+    people: &[usize],
+    runs: usize,
+) -> Vec<PrecisionPoint> {
+    let path = format!("{}/../../study-config/{name}", env!("CARGO_MANIFEST_DIR"));
+    let mut value = mimique_study::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+    change(&mut value);
+    let study = Study::from_value(&value).unwrap();
+    let mut parameters = Parameters::for_study(&study);
+    (parameters.dropout.declined, parameters.dropout.per_trial) = (0.0, 0.0);
+    let options = PowerOptions {
+        participants: people.to_vec(),
+        clips: vec![],
+        runs,
+        seed: 5,
+        alpha: 0.05,
+        false_positives: false,
+        mixed: false,
+    };
+    let counted = std::sync::atomic::AtomicU64::new(0);
+    let count = || {
+        counted.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    let found = power(&study, "hash", &parameters, &options, &count).unwrap();
+    assert_eq!(counted.into_inner(), power_runs(&study, &options), "progress comes to its end");
+    for language in [Language::English, Language::French] {
+        let table = power_markdown(&found, language);
+        assert_eq!(
+            table.lines().filter(|line| line.starts_with("| ")).count(),
+            1 + 3 * people.len()
+        );
+    }
+    let [block] = &found.precision[..] else { panic!("{:?}", found.precision) };
+    assert_eq!(precision_csv(&found).lines().count(), 1 + block.points.len());
+    block.points.clone()
+}
+
+#[test]
+fn intervals_of_thresholds_and_scales_narrow_with_trials_and_people() {
+    let trials = |value: &mut Value| {
+        value["components"]["limit"]["trials"] = 12.into();
+        value["hypotheses"] = serde_json::json!([]);
+    };
+    let limit = precision_of("jnd-alpha.json", trials, &[5, 18], 5);
+    let of = |points: &[PrecisionPoint], trials, participants| {
+        let found = points.iter().find(|it| (it.trials, it.participants) == (trials, participants));
+        found.unwrap().clone()
+    };
+    let width = |trials, people| of(&limit, trials, people).width.unwrap();
+    assert!(width(12, 18) < 0.75 * width(12, 5), "{limit:?}");
+    assert!(width(24, 18) < width(6, 18), "{limit:?}");
+    let told = |trials| of(&limit, trials, 18).told;
+    assert!(told(24) > 0.75 && told(24) >= told(6), "{limit:?}");
+    assert!(limit.iter().all(|point| point.falsely.is_none()));
+    let scale = precision_of(
+        "scale-alpha.json",
+        |value| value["hypotheses"] = serde_json::json!([]),
+        &[4, 16],
+        12,
+    );
+    let trials = scale[2].trials;
+    let width = |trials, people| of(&scale, trials, people).width.unwrap();
+    assert!(width(trials, 16) < 0.75 * width(trials, 4), "{scale:?}");
+    assert!(width(2 * trials, 16) < width(trials / 2, 16), "{scale:?}");
+}
+
+#[test]
+fn faces_in_mind_are_found_by_more_people_and_trials_and_nothing_else_is() {
+    let change = |value: &mut Value| {
+        let blocks = value["components"].as_object_mut().unwrap().values_mut();
+        for block in blocks.filter(|block| block["type"] == "reverseCorrelation") {
+            block["trials"] = 60.into();
+        }
+        value["hypotheses"] = serde_json::json!([]);
+    };
+    let found = precision_of("reverse-correlation.json", change, &[3, 10], 2);
+    let told = |trials: u32, people: usize| {
+        found.iter().find(|it| (it.trials, it.participants) == (trials, people)).unwrap().told
+    };
+    assert!(told(120, 10) > told(30, 3) + 0.2, "{found:?}");
+    assert!(told(120, 10) > 0.6, "{found:?}");
+    assert!(
+        found.iter().all(|point| point.falsely.unwrap() < 0.03 && point.width.is_none()),
+        "{found:?}"
+    );
 }

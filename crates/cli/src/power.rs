@@ -9,7 +9,7 @@ use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_analysis::{
     Language, Power, PowerOptions, Preregistration, no_effect, power, power_csv, power_curve,
-    power_markdown, power_runs, preregistration,
+    power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
 };
 
 use crate::output;
@@ -44,7 +44,7 @@ pub struct Args {
     /// Leave out the false positives, which take as many runs again
     #[arg(long)]
     no_false_positives: bool,
-    /// Folder for power.csv, power.json, power.md and power.svg
+    /// Folder for power.csv, power.json, power.md and power.svg, and precision.csv where blocks tell thresholds, scales or faces in mind
     #[arg(long)]
     out: Option<PathBuf>,
     /// Write a preregistration to this file (markdown), its curve beside it
@@ -83,6 +83,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         write(out.join("power.csv"), power_csv(&power))?;
         write(out.join("power.json"), format!("{}\n", serde_json::to_string_pretty(&json)?))?;
         write(out.join("power.md"), power_markdown(&power, language))?;
+        if !power.precision.is_empty() {
+            write(out.join("precision.csv"), precision_csv(&power))?;
+        }
         write(out.join("power.svg"), curve.clone())?;
     }
     if let Some(path) = &args.preregistration {
@@ -106,6 +109,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         return Ok(());
     }
     print(&mut out, &power)?;
+    if !power.precision.is_empty() {
+        write!(out, "\n{}", precision_markdown(&power, Language::English).trim_end())?;
+        writeln!(out)?;
+    }
     if args.assumptions.is_default() {
         writeln!(
             out,

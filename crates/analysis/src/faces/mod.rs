@@ -37,14 +37,14 @@ pub(crate) struct FoundImages {
     pub found: Option<BlockImages>,
 }
 
-/// The images of every block of reverse correlation whose question was answered.
-pub(crate) fn images(export: &Export, study: &Study) -> Vec<FoundImages> {
+/// The images of every block of reverse correlation whose question was answered, tested by so many permutations.
+pub(crate) fn images(export: &Export, study: &Study, permutations: usize) -> Vec<FoundImages> {
     let of = |(name, block): (&str, ReverseCorrelationComponent)| {
         let (trials, not_replayed) = trials(export, study, name, &block);
         let options = ReverseCorrelationOptions {
             bins: BINS,
             duration_s: block.duration_seconds,
-            permutations: PERMUTATIONS,
+            permutations,
             seed: study.seed,
         };
         let is_there = !trials.trials.is_empty() || not_replayed > 0;

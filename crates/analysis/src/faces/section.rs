@@ -3,7 +3,7 @@
 use mimique_stats::{CategoryImages, GroupImage, UnitCourse, UnitImage};
 
 use super::figure::{ImageWords, face, image};
-use super::{BlockImages, FoundImages, images};
+use super::{BlockImages, FoundImages, PERMUTATIONS, images};
 use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
 
@@ -13,7 +13,7 @@ const LEVEL: f64 = 0.05;
 impl Writer<'_> {
     /// The images of each category, for each block of reverse correlation.
     pub(crate) fn faces(&mut self) {
-        for FoundImages { block, found } in images(self.export, self.study) {
+        for FoundImages { block, found } in images(self.export, self.study, PERMUTATIONS) {
             let language = self.language();
             self.blocks.push(Block::Heading(
                 2,

@@ -13,6 +13,8 @@ mod dataset_tests;
 mod design;
 mod drawn_pairs;
 mod given;
+mod precision;
+mod precision_table;
 mod table;
 
 use mimique_stats::{Adjustment, Outcome, proportion};
@@ -29,6 +31,8 @@ use crate::language::naming::Naming;
 use crate::simulate::{Draws, Model, Parameters, ParametersError};
 pub use curve::power_curve;
 use design::Design;
+pub use precision::{BlockPrecision, PrecisionPoint, Told};
+pub use precision_table::{precision_csv, precision_markdown};
 pub(crate) use table::enough;
 pub use table::{no_effect, power_csv, power_markdown};
 
@@ -64,6 +68,9 @@ pub struct Power {
     pub alpha: f64,
     /// A point for each number of people and of clips, in this order.
     pub points: Vec<PowerPoint>,
+    /// How exactly blocks tell what no hypothesis tests: thresholds, scales, faces in mind.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub precision: Vec<BlockPrecision>,
 }
 
 /// One number of people and of clips.
@@ -187,12 +194,15 @@ pub fn power(
 ) -> Result<Power, PowerError> {
     check(study, options)?;
     parameters.check(study)?;
+    let precision = precision::precision(study, config_hash, parameters, options, progress)?;
     let null = parameters.without_effects(study);
     let effects: Vec<bool> =
         study.hypotheses.iter().map(|each| parameters.has_effect(study, each)).collect();
     let most = options.participants.iter().copied().max().unwrap_or(0);
     let mut points = Vec::new();
-    for clips in clip_numbers(study, options) {
+    let numbers =
+        if study.hypotheses.is_empty() { Vec::new() } else { clip_numbers(study, options) };
+    for clips in numbers {
         let design = Design::new(study, config_hash, most, clips)?;
         let model = design.model(parameters);
         let null_model = without_effects_too(study, options).then(|| design.model(&null));
@@ -243,6 +253,7 @@ pub fn power(
         seed: options.seed,
         alpha: options.alpha,
         points,
+        precision,
     })
 }
 
@@ -275,11 +286,15 @@ fn without_effects_too(study: &Study, options: &PowerOptions) -> bool {
 /// How many runs [`power`] makes.
 pub fn power_runs(study: &Study, options: &PowerOptions) -> u64 {
     let kinds = if without_effects_too(study, options) { 2 } else { 1 };
-    (options.participants.len() * options.clips.len().max(1) * options.runs * kinds) as u64
+    let points = match study.hypotheses.is_empty() {
+        true => 0,
+        false => options.participants.len() * options.clips.len().max(1),
+    };
+    (points * options.runs * kinds + precision::simulated(study, options)) as u64
 }
 
 fn check(study: &Study, options: &PowerOptions) -> Result<(), PowerError> {
-    if study.hypotheses.is_empty() {
+    if study.hypotheses.is_empty() && precision::blocks(study).is_empty() {
         return Err(PowerError::NoHypotheses);
     }
     for (index, hypothesis) in study.hypotheses.iter().enumerate() {

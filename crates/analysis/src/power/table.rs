@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::precision_table::precision_markdown;
 use super::{Columns, HypothesisPower, Power, PowerPoint, Rate};
 use crate::language::Language;
 use crate::report::document::csv_text;
@@ -123,7 +124,7 @@ pub fn power_markdown(power: &Power, language: Language) -> String {
         text.push('\n');
         text += &of_clips(power, place, language);
     }
-    text
+    text + &precision_markdown(power, language)
 }
 
 /// People x segments of a hypothesis of other clips too; nothing of another one.

@@ -25,11 +25,12 @@ pub(crate) struct BlockScale {
     pub scale: Outcome<DifferenceScale>,
 }
 
-/// The scale of every block of difference scaling whose question was answered about three levels or more.
-pub(crate) fn scales(export: &Export, study: &Study) -> Vec<BlockScale> {
+/// The scale of every block of difference scaling whose question was answered about three levels or more; intervals by
+/// `rounds` draws of people.
+pub(crate) fn scales(export: &Export, study: &Study, rounds: usize) -> Vec<BlockScale> {
     let of = |(name, block): (&str, ScalingComponent)| {
         let judgements = judgements(export, study, name, &block);
-        let scale = difference_scaling(&judgements, ROUNDS, study.seed).ok()?;
+        let scale = difference_scaling(&judgements, rounds, study.seed).ok()?;
         Some(BlockScale { block: name.to_owned(), parameter: block.parameter, scale })
     };
     study.scalings().filter_map(of).collect()

@@ -2,14 +2,14 @@
 
 use mimique_stats::{DifferenceScale, Outcome};
 
-use super::{BlockScale, figure, scales};
+use super::{BlockScale, ROUNDS, figure, scales};
 use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
 
 impl Writer<'_> {
     /// The perceived scale of each block of difference scaling.
     pub(crate) fn scalings(&mut self) {
-        for block in scales(self.export, self.study) {
+        for block in scales(self.export, self.study, ROUNDS) {
             self.scaling(&block);
             self.results.scalings.push(block);
         }

@@ -16,7 +16,7 @@ use crate::trials::export::{Answer, Export, ShownLevel};
 /// Share of right answers by chance: one of two clips.
 const GUESS: f64 = 0.5;
 /// Runs of the rule, with answers drawn from the fitted function, for an interval.
-const ROUNDS: usize = 1000;
+pub(crate) const ROUNDS: usize = 1000;
 
 /// The thresholds of an adaptive block.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,8 +84,9 @@ pub(crate) struct ShownAnswer {
     pub right: bool,
 }
 
-/// The thresholds of every adaptive block whose question was answered.
-pub(crate) fn thresholds(export: &Export, study: &Study) -> Vec<BlockThresholds> {
+/// The thresholds of every adaptive block whose question was answered; intervals by `rounds` runs of the rule, none of
+/// them: no intervals.
+pub(crate) fn thresholds(export: &Export, study: &Study, rounds: usize) -> Vec<BlockThresholds> {
     let of = |(name, block): (&str, AdaptiveComponent)| {
         let answers = export.answers_to(&block.question);
         let people: Vec<PersonThreshold> = (0..export.people.len())
@@ -96,7 +97,7 @@ pub(crate) fn thresholds(export: &Export, study: &Study) -> Vec<BlockThresholds>
                     own.filter_map(|answer| level_of(export, answer, name)).collect();
                 (!own.is_empty()).then(|| {
                     let seed = study.seed ^ (person as u64 + 1);
-                    of_person(&export.people[person].id, &own, (name, &block), seed)
+                    of_person(&export.people[person].id, &own, (name, &block), (rounds, seed))
                 })
             })
             .collect();
@@ -127,7 +128,7 @@ fn of_person(
     participant: &str,
     answers: &[(&Answer, &ShownLevel)],
     (name, block): (&str, &AdaptiveComponent),
-    seed: u64,
+    (rounds, seed): (usize, u64),
 ) -> PersonThreshold {
     let mut catches = [0, 0];
     let mut shown = Vec::new();
@@ -150,9 +151,9 @@ fn of_person(
         Some(Outcome::Undefined { .. }) => (without_fit(&counts, block), None),
         None => (Threshold::Unknown, None),
     };
-    let interval = fit.as_ref().and_then(|fit| {
+    let interval = fit.as_ref().filter(|_| rounds > 0).and_then(|fit| {
         let tracks = tracks(name, block)?;
-        let drawn = bootstrap_through(&tracks, &options, &fit.psychometric(), ROUNDS, seed)?;
+        let drawn = bootstrap_through(&tracks, &options, &fit.psychometric(), rounds, seed)?;
         Some(ascending(drawn.level_at_half.map(|ease| block.vary.ease(ease))))
     });
     let participant = participant.to_owned();

@@ -1,7 +1,7 @@
 //! What the report says of adaptive blocks.
 
 use super::figure::{FigureWords, curve_and_track};
-use super::{BlockThresholds, PersonThreshold, Threshold, thresholds};
+use super::{BlockThresholds, PersonThreshold, ROUNDS, Threshold, thresholds};
 use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
 
@@ -11,7 +11,7 @@ const MOST_DRAWN: usize = 6;
 impl Writer<'_> {
     /// The thresholds of people and their mean, for each adaptive block.
     pub(crate) fn thresholds(&mut self) {
-        for block in thresholds(self.export, self.study) {
+        for block in thresholds(self.export, self.study, ROUNDS) {
             self.block_thresholds(&block);
             self.results.thresholds.push(block);
         }

@@ -28,6 +28,8 @@ pub struct Fit {
     pub(crate) problem: Problem,
     /// What depends on which markers are seen, for all of them.
     pub(crate) all_visible: VisibleMarkers,
+    /// The second method of a blend, and its share.
+    second: Option<Box<(Fit, f64)>>,
 }
 
 impl Fit {
@@ -39,7 +41,11 @@ impl Fit {
     pub fn new(operators: &Operators, spec: &MethodSpec) -> Result<Fit, FitError> {
         let problem = Problem::new(operators, spec)?;
         let all_visible = VisibleMarkers::new(&problem, vec![false; problem.marker_count]);
-        Ok(Fit { problem, all_visible })
+        let second = match spec.second() {
+            Some(second) => Some(Box::new((Fit::new(operators, &second)?, spec.blend()))),
+            None => None,
+        };
+        Ok(Fit { problem, all_visible, second })
     }
 
     /// N, the weights of a frame.
@@ -58,7 +64,7 @@ impl Fit {
         self.all_visible.least_norm
     }
 
-    /// A solver of consecutive frames. A method that solves windows sees one frame at a time here, without
+    /// A solver of consecutive frames, of a blend by its first method alone. A method that solves windows sees one frame at a time here, without
     /// second differences.
     pub fn frames(&self) -> FrameSolver<'_> {
         FrameSolver::new(self)
@@ -71,7 +77,12 @@ impl Fit {
     /// [`FitError::Displacements`] unless `d` has 3P numbers.
     pub fn solve_frame(&self, d: &[f64]) -> Result<FrameSolution, FitError> {
         let mut weights = vec![0.0; self.shape_count()];
-        let report = self.frames().solve(d, &mut weights)?;
+        let mut report = self.frames().solve(d, &mut weights)?;
+        if let Some((fit, share)) = self.second.as_deref() {
+            let second = fit.solve_frame(d)?;
+            mix(&mut weights, &second.weights, *share);
+            report = report.of_blend(&second.report, self.residual(d, &weights));
+        }
         Ok(FrameSolution { weights, report })
     }
 
@@ -80,11 +91,28 @@ impl Fit {
     /// The frames of each chunk of [`CHUNK_FRAMES`] start from one another, the first one cold: the
     /// answer has the same bits however the chunks are shared out. With the feature `parallel` they
     /// are solved on all cores. Methods that hold to the last frame solve the whole take in order, and
-    /// those with second differences window by window ([`crate::WINDOW_FRAMES`], [`crate::LOOK_AHEAD`]).
+    /// those with second differences window by window ([`crate::WINDOW_FRAMES`], [`crate::LOOK_AHEAD`]). Of a blend both
+    /// methods solve the take, and their weights are mixed frame by frame.
     ///
     /// # Errors
     /// [`FitError::Displacements`] unless `d` is whole frames.
     pub fn solve_take(&self, d: &[f64]) -> Result<TakeSolution, FitError> {
+        let mut solution = self.solve_alone(d)?;
+        if let Some((fit, share)) = self.second.as_deref() {
+            let second = fit.solve_alone(d)?;
+            mix(&mut solution.weights, &second.weights, *share);
+            let (width, n) = (3 * self.marker_count(), self.shape_count());
+            let frames = d.chunks_exact(width).zip(solution.weights.chunks_exact(n));
+            let reports = solution.reports.iter_mut().zip(&second.reports);
+            for ((d, weights), (report, second)) in frames.zip(reports) {
+                *report = report.of_blend(second, self.residual(d, weights));
+            }
+        }
+        Ok(solution)
+    }
+
+    /// A take by the first method alone.
+    fn solve_alone(&self, d: &[f64]) -> Result<TakeSolution, FitError> {
         let width = 3 * self.marker_count();
         if width == 0 || !d.len().is_multiple_of(width) {
             return Err(self.wrong_size(d.len()));
@@ -159,5 +187,12 @@ impl Fit {
 
     pub(crate) fn wrong_size(&self, found: usize) -> FitError {
         FitError::Displacements { found, markers: self.marker_count() }
+    }
+}
+
+/// Puts a share of other weights into the place of as much of these.
+fn mix(weights: &mut [f64], other: &[f64], share: f64) {
+    for (weight, other) in weights.iter_mut().zip(other) {
+        *weight = (1.0 - share) * *weight + share * other;
     }
 }

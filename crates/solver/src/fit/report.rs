@@ -22,6 +22,19 @@ pub struct FrameReport {
     pub warning: Option<FrameWarning>,
 }
 
+impl FrameReport {
+    /// Of a blend: what is to be said of its frame, whose mixed weights have this residual.
+    pub(crate) fn of_blend(&self, second: &FrameReport, residual: f64) -> FrameReport {
+        FrameReport {
+            residual,
+            iterations: self.iterations + second.iterations,
+            kkt_error: self.kkt_error.max(second.kkt_error),
+            warning: self.warning.or(second.warning),
+            ..*self
+        }
+    }
+}
+
 /// The largest weight that a face has any use for.
 pub const LARGEST_WEIGHT: f64 = 10.0;
 /// The largest displacement of a point of the face, metres.

@@ -20,6 +20,9 @@ macro_rules! names {
             /// Every method, in the order in which they are listed.
             pub const ALL: [Method; [$($name),+].len()] = [$(Method::$variant),+];
 
+            /// Their names, in the same order.
+            pub const NAMES: &'static [&'static str] = &[$($name),+];
+
             /// The name in study files and on the command line.
             pub fn name(self) -> &'static str {
                 match self {

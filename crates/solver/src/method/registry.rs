@@ -33,7 +33,14 @@ impl Method {
 
     /// Whether it uses the parameters of a group.
     pub fn uses(self, group: Group) -> bool {
-        group == Group::Timing || self.definition().uses.contains(&group)
+        match group {
+            Group::Timing => true,
+            Group::Blend => {
+                self.needs() == Needs::Shapes
+                    && !self.definition().uses.contains(&Group::Association)
+            }
+            _ => self.definition().uses.contains(&group),
+        }
     }
 
     /// Whether the weights of a frame depend on other frames of the take: on the one before, or on those

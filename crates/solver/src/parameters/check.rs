@@ -21,7 +21,7 @@ impl MethodSpec {
         let mut found = Vec::new();
         for (row, field) in self.fields() {
             let Some(value) = field.json() else { continue };
-            if !self.method.uses(row.about.group) {
+            if !self.uses(row.about.group) {
                 found.push(SpecError::of(row.key, SpecFault::NotUsed { method: self.method }));
                 continue;
             }
@@ -37,8 +37,14 @@ impl MethodSpec {
                 found.push(SpecError::of(row.key, fault));
             }
         }
-        if self.method.uses(Group::ThinShell) && self.k_s() == 0.0 && self.k_b() == 0.0 {
+        if self.uses(Group::ThinShell) && self.k_s() == 0.0 && self.k_b() == 0.0 {
             found.push(SpecError::of("kS", SpecFault::NoThinShell));
+        }
+        if let Some(second) = self.blend_with
+            && (second == self.method || !second.uses(Group::Blend))
+        {
+            let fault = SpecFault::NotBlended { method: self.method, second };
+            found.push(SpecError::of("blendWith", fault));
         }
         self.check_importance(&mut found);
         self.check_locked(&mut found);

@@ -41,6 +41,9 @@ pub enum Group {
     Frames,
     /// What becomes of the weights over time: every method uses it.
     Timing,
+    /// A second method whose weights are mixed in: every method that solves an avatar's shapes with the same
+    /// operators uses it.
+    Blend,
 }
 
 impl Group {
@@ -64,6 +67,7 @@ impl Group {
             Group::FrontEnd => "Front end",
             Group::Frames => "Frames",
             Group::Timing => "Timing",
+            Group::Blend => "Blend of two methods",
         }
     }
 }

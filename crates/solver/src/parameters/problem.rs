@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::method::names::Method;
+use crate::parameters::group::Group;
 use crate::parameters::kind::{Kind, NamesOf, Range};
 
 /// Something wrong in a method's parameters.
@@ -62,6 +63,13 @@ pub enum SpecFault {
     NotUsed {
         /// The method.
         method: Method,
+    },
+    /// The two methods cannot be blended.
+    NotBlended {
+        /// The method.
+        method: Method,
+        /// The one to blend it with.
+        second: Method,
     },
     /// The parameter has no effect beside another one.
     NoEffect {
@@ -125,6 +133,7 @@ impl SpecError {
             SpecFault::UnknownParameter => "unknown-key",
             SpecFault::OutOfRange { .. } | SpecFault::NoInterval { .. } => "out-of-range",
             SpecFault::NotUsed { .. } => "not-used",
+            SpecFault::NotBlended { .. } => "not-blended",
             SpecFault::NoEffect { .. } => "no-effect",
             SpecFault::NoThinShell => "no-thin-shell",
             SpecFault::MetExactly { .. } => "met-exactly",
@@ -147,6 +156,9 @@ impl SpecError {
             SpecFault::OutOfRange { value, .. } => format!("is {value}"),
             SpecFault::NoInterval { value: [low, high] } => format!("is [{low}, {high}]"),
             SpecFault::NotUsed { method } => format!("'{method}' does not use it"),
+            SpecFault::NotBlended { method, second } => {
+                format!("'{method}' cannot be blended with '{second}'")
+            }
             SpecFault::NoEffect { value, because } => format!("is {value}, but {because}"),
             SpecFault::NoThinShell => "kS and kB are both 0, which leaves no thin shell".to_owned(),
             SpecFault::MetExactly { importance } => {
@@ -181,6 +193,11 @@ impl SpecError {
                 [] => "remove it (it takes none)".to_owned(),
                 taken => format!("remove it (it takes {})", taken.join(", ")),
             },
+            SpecFault::NotBlended { method, .. } => {
+                let others = Method::ALL.into_iter();
+                let others = others.filter(|other| other != method && other.uses(Group::Blend));
+                format!("name one of {}", others.map(Method::name).collect::<Vec<_>>().join(", "))
+            }
             SpecFault::NoEffect { .. } => "remove it".to_owned(),
             SpecFault::NoThinShell => "make one positive".to_owned(),
             SpecFault::MetExactly { .. } => {

@@ -7,6 +7,7 @@
 use serde_json::Value;
 
 use crate::kouadio::associated_rows::VertexAssociation;
+use crate::method::definition::Defaults;
 use crate::method::names::Method;
 use crate::parameters::choices::{
     Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
@@ -158,7 +159,7 @@ macro_rules! parameters {
 parameters! {
     /// Weight of the thin shell against the bounds: at 0 there is no shell, at 1 there are no soft
     /// bounds.
-    alpha: Option<f64> as "alpha" = |spec| spec.method.definition().defaults.alpha,
+    alpha: Option<f64> as "alpha" = |spec| spec.defaults(Group::Balance).alpha,
     { group: Group::Balance, label: "α, thin shell against bounds", range: Range::between(0.0, 1.0), step: Some(0.05), }
 
     /// Weight of the priors against the data.
@@ -187,8 +188,8 @@ parameters! {
 
     /// Smoothing of the norms, sqrt(x^2 + eps^2): in units of l, for the literal forms in their unit.
     eps: Option<f64> as "eps" = |spec| {
-        let eps = spec.method.definition().defaults.eps;
-        if spec.method.uses(Group::LiteralUnit) { eps * spec.unit().per_metre() } else { eps }
+        let eps = spec.defaults(Group::Norms).eps;
+        if spec.uses(Group::LiteralUnit) { eps * spec.unit().per_metre() } else { eps }
     },
     { group: Group::Norms, label: "ε, smoothing of the norms", range: Range::at_least(0.0), }
 
@@ -365,6 +366,21 @@ parameters! {
         group: Group::Timing, label: "Delay of the face", range: Range::between(-1000.0, 1000.0),
         quantity: Quantity::Milliseconds, step: Some(10.0), found_by: Some("0"),
     }
+
+    /// A second method that solves the same markers; parameters that it alone uses are its own.
+    blend_with: Option<Method> as "blendWith",
+    { group: Group::Blend, label: "Blended with", found_by: Some("no second method"), }
+
+    /// The second method's share of the weights: 0 is the first method, 1 the second.
+    blend: Option<f64> as "blend" = |_| 0.0,
+    {
+        group: Group::Blend, label: "Share of the second method", range: Range::between(0.0, 1.0),
+        step: Some(0.05),
+        effect: Some(Effect {
+            when: |spec| spec.blend_with.is_some(),
+            because: "no second method is named (blendWith)",
+        }),
+    }
 }
 
 impl MethodSpec {
@@ -377,11 +393,41 @@ impl MethodSpec {
         }
     }
 
+    /// Whether the method, or the second one of a blend, uses the parameters of a group.
+    pub(crate) fn uses(&self, group: Group) -> bool {
+        let blends = group != Group::Blend && self.method.uses(Group::Blend);
+        let second = self.blend_with.filter(|_| blends);
+        self.method.uses(group) || second.is_some_and(|second| second.uses(group))
+    }
+
+    /// The method of a blend that uses a group, the first one before the second, and its defaults.
+    fn defaults(&self, group: Group) -> &'static Defaults {
+        let second = self.blend_with.filter(|_| !self.method.uses(group));
+        &second.unwrap_or(self.method).definition().defaults
+    }
+
+    /// The second method of a blend, with those of the parameters that it uses: where both use one, they share its
+    /// value.
+    pub fn second(&self) -> Option<MethodSpec> {
+        let method = self.blend_with?;
+        let mut spec = MethodSpec::new(method);
+        let shared = self.resolved();
+        let fields = shared
+            .fields()
+            .filter(|(row, _)| row.about.group != Group::Blend && method.uses(row.about.group));
+        for (row, field) in fields {
+            if let Some(value) = field.json() {
+                spec.read_field(row.key, &value, &mut |_, _| ());
+            }
+        }
+        Some(spec)
+    }
+
     /// Whether the method uses the parameter of a key, and the others leave it an effect.
     pub(crate) fn has_effect(&self, key: &str) -> bool {
         PARAMETERS.iter().any(|row| {
             row.key == key
-                && self.method.uses(row.about.group)
+                && self.uses(row.about.group)
                 && row.about.effect.is_none_or(|effect| (effect.when)(self))
         })
     }

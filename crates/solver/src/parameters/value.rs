@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
+use crate::method::names::Method;
 use crate::parameters::choices::{
     Association, Gaze, Hold, Inference, LaplacianKind, Unit, Unsolved, Untold,
 };
@@ -149,6 +150,26 @@ macro_rules! words {
             }
         }
     )+};
+}
+
+impl Scalar for Method {
+    const KIND: Kind = Kind::Word(Method::NAMES);
+    const BY_NAME: Kind = Kind::Word(Method::NAMES);
+
+    fn read(value: &Value) -> Result<Method, SpecFault> {
+        let Some(found) = value.as_str() else { return Err(wrong(value, Self::KIND)) };
+        let method = Method::ALL.into_iter().find(|method| method.name() == found);
+        method
+            .ok_or_else(|| SpecFault::UnknownWord { found: found.to_owned(), words: Method::NAMES })
+    }
+
+    fn json(self) -> Value {
+        json!(self.name())
+    }
+
+    fn fault(self, _: &Limits) -> Option<SpecFault> {
+        None
+    }
 }
 
 words! { Association Gaze Hold Inference LaplacianKind Unit Unsolved Untold }

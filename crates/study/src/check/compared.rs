@@ -7,7 +7,7 @@ use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::values::Nearest;
 use crate::columns::ColumnKind;
-use crate::study_file::{Clip, ClipSelection, NoCells};
+use crate::study_file::NoCells;
 
 /// What is compared, and what its clips are alike in.
 pub(super) fn factors(
@@ -63,23 +63,25 @@ pub(super) fn columns(
     }
 }
 
-/// The clips have neither sound nor a clock of their own.
-pub(super) fn drawn_and_silent(
+/// The clips of each cell that are shown in step have one sound, or none: of several nobody could tell which is whose.
+pub(super) fn one_sound<'c>(
     subject: &Subject<'_>,
-    clips: &ClipSelection,
+    cells: impl IntoIterator<Item = &'c [String]>,
     place: &str,
     issues: &mut Issues,
 ) {
-    let stimuli = &subject.study.stimuli;
-    if !stimuli.sounds.is_empty() {
-        issues.error(place, Problem::SeveralWithSound);
-    }
-    let is_video = |clip: &&Clip| {
-        let avatar = stimuli.avatars.get(&clip.avatar);
-        clips.takes(clip) && avatar.is_some_and(|avatar| !avatar.videos.is_empty())
+    let clip = |id: &String| subject.clips.iter().find(|clip| clip.id == *id);
+    let heard = |id: &String| {
+        let heard = subject.study.heard(clip(id)?)?;
+        Some((heard.file, heard.from_s, heard.segment.id.as_str(), heard.delay_ms))
     };
-    if subject.clips.iter().any(|clip| is_video(&clip)) {
-        issues.error(place, Problem::SeveralWithVideo);
+    for cell in cells {
+        let Some((first, others)) = cell.split_first() else { continue };
+        if let Some(other) = others.iter().find(|other| heard(other) != heard(first)) {
+            let (clip, other) = (first.clone(), (*other).clone());
+            issues.error(place, Problem::TwoSounds { clip, other });
+            return;
+        }
     }
 }
 

@@ -1,13 +1,13 @@
 //! Device, calibration, time limits, practice, screening, attention checks, hosting without a server.
 
-use super::Subject;
 use super::conditions::{self, Asks};
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::values::Nearest;
+use super::{Subject, compared};
 use crate::practice::right_answers;
 use crate::question::Question;
-use crate::study_file::{Component, Hearing, TimeLimit, Training, Triggers};
+use crate::study_file::{ClipShowing, Component, Hearing, TimeLimit, Training, Triggers};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     device(subject, issues);
@@ -154,6 +154,7 @@ fn practice(subject: &Subject<'_>, training: &Training, issues: &mut Issues) {
         .filter_map(|id| subject.study.questions.iter().find(|question| question.id == *id))
         .cloned()
         .collect();
+    practice_pairs(subject, training, issues);
     stated_answers(training, &asked, issues);
     let judged = training
         .clips
@@ -175,6 +176,25 @@ fn practice(subject: &Subject<'_>, training: &Training, issues: &mut Issues) {
     }
     if !training.feedback {
         issues.warning("/training", Problem::NoFeedback);
+    }
+}
+
+/// What stands beside practice clips: beside those of the training alone, and each another clip.
+fn practice_pairs(subject: &Subject<'_>, training: &Training, issues: &mut Issues) {
+    let clips: Vec<&String> = subject.clips.iter().map(|clip| &clip.id).collect();
+    for (clip, other) in &training.beside {
+        let place = below("/training/beside", clip);
+        if !training.clips.contains(clip) {
+            let known = Nearest::to(clip, &training.clips);
+            issues.error(&place, Problem::NotAPracticeClip { clip: clip.clone(), known });
+        } else if !clips.contains(&other) {
+            issues.error(&place, Problem::unknown("clip", other, &clips));
+        } else if other == clip {
+            issues.error(&place, Problem::BesideItself { clip: clip.clone() });
+        } else if training.show == ClipShowing::InStep {
+            let pair = [clip.clone(), other.clone()];
+            compared::one_sound(subject, [pair.as_slice()], &place, issues);
+        }
     }
 }
 

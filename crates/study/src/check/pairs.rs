@@ -22,11 +22,16 @@ pub(super) fn examine(
     compared::factors(named, &factors, pointer, issues);
     questions(subject, &block, pointer, issues);
     compared::columns(subject, &PAIR_COLUMNS, pointer, issues);
-    if block.show == ClipShowing::InTurn {
-        compared::drawn_and_silent(subject, &block.clips, &below(pointer, "show"), issues);
-    }
     if issues.count() == before {
         dealt(subject, &block, pointer, issues);
+    }
+    if issues.count() == before
+        && block.show == ClipShowing::InStep
+        && let Ok(trials) = block.trials(subject.clips)
+    {
+        let levels = block.compared(subject.clips).len().max(1);
+        let clips = trials.pairs.map_or_else(Vec::new, |pairs| pairs.clips);
+        compared::one_sound(subject, clips.chunks(levels), pointer, issues);
     }
 }
 

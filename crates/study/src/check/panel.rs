@@ -22,7 +22,6 @@ pub(super) fn examine(
     compared::factors(named, &factors, pointer, issues);
     scale(subject, &block, pointer, issues);
     compared::columns(subject, &PANEL_COLUMNS, pointer, issues);
-    compared::drawn_and_silent(subject, &block.clips, pointer, issues);
     if issues.count() == before {
         conditions(subject, &block, pointer, issues);
     }
@@ -70,7 +69,12 @@ fn conditions(subject: &Subject<'_>, block: &PanelComponent, pointer: &str, issu
     if block.exclude.is_some() && block.reference.is_none() {
         issues.error(below(pointer, "exclude"), Problem::ScreensByReference);
     }
-    if let Err(why) = block.trials(subject.clips) {
-        compared::no_cells(why, pointer, issues);
+    match block.trials(subject.clips) {
+        Err(why) => compared::no_cells(why, pointer, issues),
+        Ok(trials) => {
+            let pages = trials.panel.filter(|panel| !panel.in_turn).map(|panel| panel.pages);
+            let pages = pages.iter().flatten().map(|page| page.clips.as_slice());
+            compared::one_sound(subject, pages, pointer, issues);
+        }
     }
 }

@@ -203,7 +203,7 @@ QuestionTwice { id: String, first: String }: "duplicate",
 NeverAsked { id: String }: "unused-question", "\"{id}\" is never asked",
     "name it in the questions of a trials component, or remove it";
 ComparesOneClip { id: String }: "no-companion", "\"{id}\" compares two clips, and only one is shown",
-    "ask it in trials components that have \"beside\"";
+    "ask it in components that have \"beside\", or in a block of pairs";
 QuestionId { id: String }: "bad-id",
     "\"{id}\" cannot be the name of a column", "use letters, digits, _ and -";
 NameTaken { id: String, by: &'static str }: "name-taken",
@@ -455,10 +455,10 @@ ShareOfAll: "pairs", "a share of the pairs is asked for, and all of them", "writ
 NoDesign { why: DesignError }: "pairs", "{why}", "write another number";
 UnevenPairs { least: usize, most: usize }: "pairs", "a pair is shown {least} times, another one {most} times",
     "ask for another number of pairs";
-SeveralWithSound: "several-clips", "clips with sound are shown one a page, or two in step",
-    "show pairs \"inStep\", or remove /stimuli/sounds";
-SeveralWithVideo: "several-clips", "a video has a clock of its own, by which clips in turn and panels cannot go",
-    "show pairs \"inStep\", or take \"clips\" that are drawn";
+TwoSounds { clip: String, other: String }: "two-sounds",
+    "\"{clip}\" and \"{other}\" are shown in step, and each has its own sound: which is whose nobody could tell",
+    "show them \"inTurn\", or take clips with one sound (name \"sound\" in \"within\")";
+BesideItself { clip: String }: "beside-itself", "\"{clip}\" is to stand beside itself", "name another clip";
 BlockColumn { name: String }: "name-taken",
     "\"{name}\" is the name of a column that exports of such blocks have", "give the factor or the question another name";
 Conditions { conditions: usize, fewest: usize, most: usize }: "panel",

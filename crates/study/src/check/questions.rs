@@ -56,8 +56,12 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
                 Problem::NeverAsked { id: question.id.clone() },
             );
         }
+        let practised_alone = study.training.iter().any(|training| {
+            let alone = |clip: &String| !training.beside.contains_key(clip);
+            training.questions.contains(&question.id) && training.clips.iter().any(alone)
+        });
         if question.kind.compares_clips()
-            && (in_training || blocks.iter().any(|block| !block.shows_two()))
+            && (practised_alone || blocks.iter().any(|block| !block.shows_two()))
         {
             issues.error(
                 below("/questions", index),

@@ -113,6 +113,12 @@ pub enum ClipShowing {
     InTurn,
 }
 
+impl ClipShowing {
+    fn is_in_step(&self) -> bool {
+        *self == Self::InStep
+    }
+}
+
 fn once() -> u32 {
     1
 }
@@ -178,6 +184,13 @@ pub struct BreakComponent {
 pub struct Training {
     /// Clip identifiers.
     pub clips: Vec<String>,
+    /// The clip that stands to the right of a practice clip: clip -> clip. A question that chooses between two clips
+    /// needs one beside each.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub beside: BTreeMap<String, String>,
+    /// How the two are shown.
+    #[serde(default, skip_serializing_if = "ClipShowing::is_in_step")]
+    pub show: ClipShowing,
     /// Identifiers of the study's `questions`.
     pub questions: Vec<String>,
     /// A line above the clip.

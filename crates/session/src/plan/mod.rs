@@ -1,19 +1,22 @@
 //! What one participant goes through, step by step: fixed at the start of the session.
 
+mod json_blocks;
+mod practice;
+
 use std::collections::BTreeMap;
 
 use crate::event::ChosenClips;
 use crate::panel::Panel;
 use crate::wire::SessionStarted;
+use json_blocks::{as_json, json_trial};
 use mimique_study::text::{Words, words};
 use mimique_study::{
     Answers, Beside, BreakComponent, Calibration, Clip, Component, DealtPairs, Draw,
     KindOfQuestion as _, LocalText, Multilingual as _, OptionOrder, OrderError, OrderedItem,
-    Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, Training, option_order,
-    order, right_answers,
+    Question, Questionnaire, Section, Sides, StudyProjection, TimeLimit, option_order, order,
 };
+use practice::practice;
 use serde::Deserialize as _;
-use serde_json::Value;
 
 /// What one participant goes through.
 #[derive(Debug, Clone, PartialEq)]
@@ -316,40 +319,6 @@ fn ordered(study: &StudyProjection, draw: Draw<'_>, items: &[OrderedItem]) -> Ve
     steps
 }
 
-/// A block of trials that is carried as JSON, and what it asks.
-fn as_json(component: &Component) -> Option<(&Value, Vec<String>)> {
-    match component {
-        Component::Adaptive(block) => Some((&block.0, vec![block.question().to_owned()])),
-        Component::Scaling(block) => Some((&block.0, vec![block.question().to_owned()])),
-        Component::ReverseCorrelation(block) => Some((&block.0, block.questions())),
-        _ => None,
-    }
-}
-
-/// A trial of a block that is carried as JSON, without its clip.
-fn json_trial(
-    study: &StudyProjection,
-    block: &Value,
-    asked: &[String],
-    number: usize,
-    condition: &str,
-) -> TrialStep {
-    TrialStep {
-        clip: String::new(),
-        questions: questions(study, asked),
-        instruction: LocalText::deserialize(&block["instruction"]).ok(),
-        maximum_replays: block["maximumReplays"].as_u64().map(|most| most as u32),
-        training: false,
-        number,
-        condition: condition.to_owned(),
-        beside: None,
-        panel: None,
-        face: None,
-        active: None,
-        right: Answers::new(),
-    }
-}
-
 /// The step of a component that is no block of trials.
 fn component_step(id: String, component: &Component) -> Option<Step> {
     let (kind, time_limit) = match component {
@@ -408,45 +377,6 @@ impl Step {
             _ => None,
         }
     }
-}
-
-/// Adds the practice trials of every round, with the pages that say what was right; returns where
-/// each round ends.
-fn practice(study: &StudyProjection, training: &Training, steps: &mut Vec<Step>) -> Vec<usize> {
-    let rounds = training.criterion.as_ref().map_or(1, |rule| rule.maximum_rounds.max(1));
-    let mut ends = Vec::new();
-    for round in 1..=rounds {
-        let again = if round > 1 { format!("#{round}") } else { String::new() };
-        for (index, clip) in training.clips.iter().enumerate() {
-            let questions = questions(study, &training.questions);
-            let right = right_answers(training, clip, &study.clips, &questions);
-            let asked = !right.is_empty();
-            let trial = TrialStep {
-                clip: clip.clone(),
-                questions,
-                instruction: training.instruction.clone(),
-                maximum_replays: None,
-                training: true,
-                number: index + 1,
-                condition: "training".to_owned(),
-                beside: None,
-                panel: None,
-                face: None,
-                active: None,
-                right,
-            };
-            let id = format!("training/{}/{clip}{again}", index + 1);
-            let time_limit = training.time_limit.clone();
-            steps.push(Step { id, kind: StepKind::Trial(trial), time_limit });
-            if training.feedback && asked {
-                let of = steps.len() - 1;
-                let id = format!("feedback/{}/{clip}{again}", index + 1);
-                steps.push(Step::new(id, StepKind::Feedback { of }));
-            }
-        }
-        ends.push(steps.len());
-    }
-    ends
 }
 
 fn questions(study: &StudyProjection, ids: &[String]) -> Vec<Question> {
