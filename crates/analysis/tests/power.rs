@@ -288,6 +288,7 @@ fn precision_of(
     let study = Study::from_value(&value).unwrap();
     let mut parameters = Parameters::for_study(&study);
     (parameters.dropout.declined, parameters.dropout.per_trial) = (0.0, 0.0);
+    parameters.careless.share = 0.0;
     let options = PowerOptions {
         participants: people.to_vec(),
         clips: vec![],
@@ -318,7 +319,7 @@ fn precision_of(
 #[test]
 fn intervals_of_thresholds_and_scales_narrow_with_trials_and_people() {
     let trials = |value: &mut Value| {
-        value["components"]["limit"]["trials"] = 12.into();
+        value["components"]["limit"]["trials"] = 20.into();
         value["hypotheses"] = serde_json::json!([]);
     };
     let limit = precision_of("jnd-alpha.json", trials, &[5, 18], 5);
@@ -327,11 +328,11 @@ fn intervals_of_thresholds_and_scales_narrow_with_trials_and_people() {
         found.unwrap().clone()
     };
     let width = |trials, people| of(&limit, trials, people).width.unwrap();
-    assert!(width(12, 18) < 0.75 * width(12, 5), "{limit:?}");
-    assert!(width(24, 18) < width(6, 18), "{limit:?}");
-    let told = |trials| of(&limit, trials, 18).told;
-    assert!(told(24) > 0.75 && told(24) >= told(6), "{limit:?}");
-    assert!(limit.iter().all(|point| point.falsely.is_none()));
+    assert!(width(20, 18) < 0.75 * width(20, 5), "{limit:?}");
+    // Few trials leave everybody near the middle of the levels: the mean is narrow, and of people little is known.
+    let error = |trials| of(&limit, trials, 18).error.unwrap();
+    assert!(error(40) < 0.8 * error(10), "{limit:?}");
+    assert!(limit.iter().all(|point| point.told > 0.75 && point.falsely.is_none()), "{limit:?}");
     let scale = precision_of(
         "scale-alpha.json",
         |value| value["hypotheses"] = serde_json::json!([]),

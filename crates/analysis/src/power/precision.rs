@@ -15,8 +15,8 @@ use super::{PowerError, PowerOptions, run_seed};
 use crate::faces::images;
 use crate::report::document::csv_text;
 use crate::scaling::scales;
-use crate::simulate::{Parameters, SimulatedSession, Simulation};
-use crate::thresholds::thresholds;
+use crate::simulate::{Parameters, SimulatedSession, Simulation, threshold};
+use crate::thresholds::{Threshold, thresholds};
 use crate::trials::export::Export;
 
 /// Simulated studies a point, at most: each of them is gone through page by page.
@@ -63,6 +63,9 @@ pub struct PrecisionPoint {
     /// Width of a 95 % interval: of the mean threshold (t, mean over studies), of ψ at the highest level (from its
     /// spread over studies). None of images.
     pub width: Option<f64>,
+    /// Of thresholds: root mean square of what is found of a person, less the planted threshold. A mean over people may
+    /// be narrow where everybody is found in the middle of the levels; this is not.
+    pub error: Option<f64>,
     /// Share of what is there that is told: people whose threshold lies within the levels, studies with a scale, units
     /// of planted faces whose presence has p of 0.05 or less.
     pub told: f64,
@@ -76,6 +79,8 @@ struct Found {
     /// Width of an interval, or the estimate whose spread over studies makes one.
     width: Option<f64>,
     estimate: Option<f64>,
+    /// Sum of the squared errors of people's thresholds.
+    squares: f64,
     /// What was told, of how much.
     told: [usize; 2],
     falsely: [usize; 2],
@@ -103,7 +108,7 @@ pub(super) fn precision(
                     let sessions = simulation.sessions(most as u64, |session| session)?;
                     progress();
                     let of = |&people: &usize| {
-                        one(&study, parameters, &sessions[..people], (&name, tells))
+                        one((&study, parameters, seed), &sessions[..people], (&name, tells))
                     };
                     Ok(options.participants.iter().map(of).collect())
                 })
@@ -167,8 +172,7 @@ fn with_trials(study: &Study, name: &str) -> Vec<(Study, u32)> {
 
 /// What the report would find in these sessions; nothing where nobody left an answer.
 fn one(
-    study: &Study,
-    parameters: &Parameters,
+    (study, parameters, seed): (&Study, &Parameters, u64),
     sessions: &[SimulatedSession],
     (name, tells): (&str, Told),
 ) -> Found {
@@ -185,6 +189,19 @@ fn one(
                 found.width = mean.mean_ci_t.map(|[low, high]| high - low);
             }
             found.told[1] = block.people.len();
+            let planted = parameters.discrimination.get(name);
+            let number = |id: &str| {
+                let own = sessions.iter().find(|own| own.started.participant_id == id)?;
+                Some(own.started.participant)
+            };
+            for person in &block.people {
+                if let (Threshold::At(level), Some(given), Some(number)) =
+                    (person.threshold, planted, number(&person.participant))
+                {
+                    let error = level - threshold(given, name, seed, number);
+                    found.squares += error * error;
+                }
+            }
         }
         Told::Scale => {
             found.told[1] = 1;
@@ -253,5 +270,8 @@ fn point(runs: &[&Found], trials: u32, participants: usize, tells: Told) -> Prec
     };
     let falsely = share(|run| run.falsely).filter(|_| tells == Told::Images);
     let told = share(|run| run.told).unwrap_or_default();
-    PrecisionPoint { trials, participants, width, told, falsely }
+    let people: usize = runs.iter().map(|run| run.told[0]).sum();
+    let squares: f64 = runs.iter().map(|run| run.squares).sum();
+    let error = (tells == Told::Thresholds && people > 0).then(|| (squares / people as f64).sqrt());
+    PrecisionPoint { trials, participants, width, error, told, falsely }
 }

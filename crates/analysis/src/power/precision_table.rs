@@ -8,7 +8,8 @@ use crate::report::document::csv_text;
 
 /// One row a block, number of trials and number of people.
 pub fn precision_csv(power: &Power) -> String {
-    let head = ["block", "tells", "trials", "participants", "runs", "width", "told", "falsely"];
+    let head =
+        ["block", "tells", "trials", "participants", "runs", "width", "error", "told", "falsely"];
     let rows = power.precision.iter().flat_map(|block| {
         block.points.iter().map(move |point| {
             let number =
@@ -25,6 +26,7 @@ pub fn precision_csv(power: &Power) -> String {
                 point.participants.to_string(),
                 block.runs.to_string(),
                 number(point.width),
+                number(point.error),
                 number(Some(point.told)),
                 number(point.falsely),
             ]
@@ -46,12 +48,12 @@ fn table(text: &mut String, block: &BlockPrecision, language: Language) {
     let BlockPrecision { block: name, tells, runs, points } = block;
     let what = language.pick(
         match tells {
-            Told::Thresholds => "width of the 95 % interval of the mean threshold (mean over studies), and the share of people whose threshold lies within the levels; trials are those of a track",
+            Told::Thresholds => "width of the 95 % interval of the mean threshold (mean over studies), root mean square error of a person’s threshold, and the share of people whose threshold lies within the levels; trials are those of a track",
             Told::Scale => "width of a 95 % interval of ψ at the highest level (from its spread over studies), and the share of studies that have a scale",
             Told::Images => "share of the units of the faces in mind whose presence is found (corrected p of 0.05 or less), and share of the other pairs of unit and answer that are found as well",
         },
         match tells {
-            Told::Thresholds => "largeur de l’intervalle à 95 % du seuil moyen (moyenne sur les études), et part des personnes dont le seuil est dans les niveaux ; les essais sont ceux d’une piste",
+            Told::Thresholds => "largeur de l’intervalle à 95 % du seuil moyen (moyenne sur les études), erreur quadratique moyenne du seuil d’une personne, et part des personnes dont le seuil est dans les niveaux ; les essais sont ceux d’une piste",
             Told::Scale => "largeur d’un intervalle à 95 % de ψ au niveau le plus haut (d’après sa dispersion d’une étude à l’autre), et part des études qui ont une échelle",
             Told::Images => "part des unités des visages en tête dont la présence est trouvée (p corrigé de 0,05 au plus), et part des autres paires d’unité et de réponse trouvées aussi",
         },
@@ -62,30 +64,36 @@ fn table(text: &mut String, block: &BlockPrecision, language: Language) {
     );
     let _ = writeln!(text, "**{name}**: {what}; {studies}.\n");
     let [trials, people] = language.pick(["trials", "people"], ["essais", "personnes"]);
-    let (first, second) = language.pick(
+    let names: &[&str] = language.pick(
         match tells {
-            Told::Thresholds => ("width", "within the levels"),
-            Told::Scale => ("width", "with a scale"),
-            Told::Images => ("found", "falsely found"),
+            Told::Thresholds => &["width", "error of a person", "within the levels"],
+            Told::Scale => &["width", "with a scale"],
+            Told::Images => &["found", "falsely found"],
         },
         match tells {
-            Told::Thresholds => ("largeur", "dans les niveaux"),
-            Told::Scale => ("largeur", "avec une échelle"),
-            Told::Images => ("trouvées", "trouvées à tort"),
+            Told::Thresholds => &["largeur", "erreur d’une personne", "dans les niveaux"],
+            Told::Scale => &["largeur", "avec une échelle"],
+            Told::Images => &["trouvées", "trouvées à tort"],
         },
     );
-    let _ = writeln!(text, "| {trials} | {people} | {first} | {second} |\n|---:|---:|---:|---:|");
+    let _ = writeln!(text, "| {trials} | {people} | {} |", names.join(" | "));
+    let _ = writeln!(text, "|{}", "---:|".repeat(2 + names.len()));
     let share = |value: f64| format!("{} %", language.fixed(100.0 * value, 1));
+    let number =
+        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| language.fixed(value, 3));
     for point in points {
-        let width = point.width.map_or_else(|| "–".to_owned(), |width| language.fixed(width, 3));
-        let [first, second] = match tells {
-            Told::Images => {
-                [share(point.told), point.falsely.map_or_else(|| "–".to_owned(), share)]
+        let cells = match tells {
+            Told::Thresholds => {
+                vec![number(point.width), number(point.error), share(point.told)]
             }
-            _ => [width, share(point.told)],
+            Told::Scale => vec![number(point.width), share(point.told)],
+            Told::Images => {
+                let falsely = point.falsely.map_or_else(|| "–".to_owned(), share);
+                vec![share(point.told), falsely]
+            }
         };
-        let _ =
-            writeln!(text, "| {} | {} | {first} | {second} |", point.trials, point.participants);
+        let (trials, people) = (point.trials, point.participants);
+        let _ = writeln!(text, "| {trials} | {people} | {} |", cells.join(" | "));
     }
     text.push('\n');
 }

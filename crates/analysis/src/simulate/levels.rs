@@ -74,6 +74,12 @@ impl Levels {
     }
 }
 
+/// The threshold of the person of a number in a block.
+pub(crate) fn threshold(given: &Discrimination, block: &str, seed: u64, number: u64) -> f64 {
+    let own = Draws::new(seed, Some(number), &format!("threshold/{block}")).normal();
+    given.threshold + given.person_sd * own
+}
+
 /// How one person tells the levels of each block.
 pub(super) struct Observer {
     /// The function of each block, of [`Varied::ease`].
@@ -86,11 +92,10 @@ impl Observer {
     pub(super) fn new(study: &Study, parameters: &Parameters, seed: u64, number: u64) -> Self {
         let of = |(name, block): (&str, AdaptiveComponent)| {
             let given: &Discrimination = parameters.discrimination.get(name)?;
-            let purpose = format!("threshold/{name}");
-            let own = Draws::new(seed, Some(number), &purpose).normal();
+            let threshold = threshold(given, name, seed, number);
             let function = Psychometric {
                 shape: Shape::Normal,
-                location: block.vary.ease(given.threshold + given.person_sd * own),
+                location: block.vary.ease(threshold),
                 spread: given.spread,
                 guess: GUESS,
                 lapse: given.lapse,

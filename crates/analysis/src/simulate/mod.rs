@@ -33,6 +33,7 @@ use rayon::prelude::*;
 
 pub use faces::{FacePart, FaceTemplates};
 pub(crate) use latent::ClipEffects;
+pub(crate) use levels::threshold;
 pub(crate) use model::{Asked, Model, Way};
 pub use parameters::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, Interaction, NumberAnswer,
