@@ -1,11 +1,15 @@
 //! The dashboard of a large study: pages of participants, sums that are kept.
 
 use axum::http::StatusCode;
+use mimique_analysis::{Parameters, Simulation};
 use mimique_server::SUMS_FORM;
+use mimique_study::Study;
+use serde_json::json;
 
 use crate::client::TestServer;
 use crate::people::owner;
 use crate::researcher::demo_participant;
+use crate::study;
 
 /// However many there are, a page lists a hundred.
 pub async fn the_list_of_participants_has_pages(server: &TestServer) {
@@ -65,6 +69,36 @@ pub async fn sums_are_kept_and_are_what_is_counted_anew(server: &TestServer) {
     server.run_sql("DELETE FROM session_sums").await;
     let server = server.restart().await;
     assert_ne!(figures(&owner.open(&server, path).await.text()), before);
+}
+
+/// Of an adaptive block the page shows the thresholds so far, one a person; of a staircase where it stands.
+pub async fn thresholds_so_far_are_shown(server: &TestServer) {
+    let mut owner = owner(server).await;
+    for (rule, words) in [(None, "threshold so far"), (Some(0.1), "level of the staircases now")] {
+        let mut file = study::of("jnd-alpha");
+        if let Some(step) = rule {
+            file["id"] = "steps".into();
+            let block = &mut file["components"]["limit"];
+            block["rule"] = json!({ "staircase": { "down": 2, "steps": [step] } });
+        }
+        let id = file["id"].as_str().unwrap().to_owned();
+        let adaptive = Study::from_value(&file).unwrap();
+        let mut parameters = Parameters::for_study(&adaptive);
+        (parameters.dropout.declined, parameters.dropout.per_trial) = (0.0, 0.0);
+        let hash = mimique_study::config_hash(&file);
+        let simulation = Simulation::new(&adaptive, &hash, &parameters, 1).unwrap();
+        let server = server.restart_with(vec![study::host(file)]).await;
+        for number in 1..=3 {
+            let session = simulation.session(number).unwrap();
+            let started = server.start_in(&id, 70 + number).await;
+            for part in session.events.chunks(50) {
+                server.stored(&started.session, part).await;
+            }
+        }
+        let page = owner.open(&server, &format!("/researcher/studies/{id}")).await.text();
+        let (_, found) = page.split_once(words).unwrap_or_else(|| panic!("{page}"));
+        assert!(found.starts_with(" (3 people), 0."), "{}", &found[..60]);
+    }
 }
 
 /// Neither sums that were kept nor those that are on their way outlive the answers.

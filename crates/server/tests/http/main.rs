@@ -160,6 +160,7 @@ topics! {
     dashboard::the_list_of_participants_has_pages,
     dashboard::sums_are_kept_and_are_what_is_counted_anew,
     dashboard::a_deleted_session_leaves_no_sums,
+    dashboard::thresholds_so_far_are_shown,
     researcher::exports_are_files,
     researcher::an_exclusion_is_in_export_and_report,
     researcher::an_owner_deletes_a_participant_who_asks_for_it,

@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tokio_stream::StreamExt as _;
 
-use super::tally::{Counting, Tally, chosen_of};
+use super::tally::{Counting, Tally, chosen_of, level_of, threshold_of};
 use crate::export::sources::{Version, as_started};
 
 /// The form of the sums that are kept of a session, and of what they are made by. Whoever changes either counts it up:
 /// what was kept in another form is made anew.
-pub const FORM: i64 = 2;
+pub const FORM: i64 = 3;
 
 /// What is counted of one session. No text that was written is in it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -64,6 +64,8 @@ struct Places {
     answer: usize,
     /// Where the study has blocks of pairs: the levels left and right, and the chosen one.
     items: Option<[usize; 3]>,
+    /// Where the study has adaptive blocks: the track, the level, and what is known of the threshold.
+    levels: Option<[usize; 3]>,
     attention_passed: usize,
     duration: usize,
     frames: usize,
@@ -86,6 +88,10 @@ impl Places {
                 .zip(place("item_right"))
                 .zip(place("item_chosen"))
                 .map(|((left, right), chosen)| [left, right, chosen]),
+            levels: place("track")
+                .zip(place("level"))
+                .zip(place("posterior_mean"))
+                .map(|((track, level), mean)| [track, level, mean]),
             attention_passed: place("attention_passed")?,
             duration: place("duration")?,
             frames: place("frames")?,
@@ -142,6 +148,8 @@ impl Counter {
     fn count_rows(&self, rows: &[Vec<Value>], sums: &mut SessionSums) {
         let places = &self.places;
         let mut counted = BTreeSet::new();
+        // Question, track -> the last of a person's thresholds so far, or of the levels of a staircase.
+        let mut thresholds: BTreeMap<(String, u64), f64> = BTreeMap::new();
         for row in rows {
             let text = |place: usize| row[place].as_str().unwrap_or_default();
             let count = |place: usize| row[place].as_u64().unwrap_or_default();
@@ -157,6 +165,17 @@ impl Counter {
                 let by = self.counting.get(response).copied().unwrap_or(Counting::Texts);
                 let tally = sums.answers.entry(response.to_owned()).or_default();
                 tally.count(&row[places.answer], by);
+                if let Some([track, level, mean]) = places.levels
+                    && let Some(track) = row[track].as_u64()
+                {
+                    let (name, number) = match row[mean].as_f64() {
+                        Some(mean) => (threshold_of(response), Some(mean)),
+                        None => (level_of(response), row[level].as_f64()),
+                    };
+                    if let Some(number) = number {
+                        thresholds.insert((name, track), number);
+                    }
+                }
                 if let Some([left, right, chosen]) = places.items {
                     let level = &row[chosen];
                     if !level.is_null() {
@@ -186,6 +205,15 @@ impl Counter {
                     *levels.entry(level).or_default() += 1;
                 }
             }
+        }
+        let mut people: BTreeMap<String, (f64, u32)> = BTreeMap::new();
+        for ((name, _), threshold) in thresholds {
+            let (sum, tracks) = people.entry(name).or_default();
+            (*sum, *tracks) = (*sum + threshold, *tracks + 1);
+        }
+        for (name, (sum, tracks)) in people {
+            let mean = Value::from(sum / f64::from(tracks));
+            sums.answers.entry(name).or_default().count(&mean, Counting::Numbers);
         }
     }
 }

@@ -106,6 +106,16 @@ pub(super) fn chosen_of(question: &str) -> String {
     format!("{question}.chosen")
 }
 
+/// Under which name the thresholds so far of an adaptive block are counted, one a person.
+pub(super) fn threshold_of(question: &str) -> String {
+    format!("{question}.threshold")
+}
+
+/// Under which name the levels are counted at which the staircases of an adaptive block stand, one a person.
+pub(super) fn level_of(question: &str) -> String {
+    format!("{question}.level")
+}
+
 /// How the answers to one question are distributed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Distribution {
@@ -121,6 +131,10 @@ pub(crate) enum Shape {
     Counts(Vec<(String, u64)>),
     /// The numbers, summed up.
     Numbers(Numbers),
+    /// Thresholds so far, one a person.
+    Thresholds(Numbers),
+    /// Where staircases stand, one a person.
+    Levels(Numbers),
     /// How many texts there are.
     Texts(u64),
 }
@@ -135,6 +149,7 @@ pub(crate) fn distributions(
     let clips = study.clips();
     for question in questions(study) {
         let chosen = chosen_of(&question.id);
+        let (threshold, level) = (threshold_of(&question.id), level_of(&question.id));
         let pairs = study.pair_blocks().filter(|(_, block)| block.question == question.id);
         let levels: Vec<String> = pairs.flat_map(|(_, block)| block.compared(&clips)).collect();
         let prompt = question.prompt.in_language(language).to_owned();
@@ -145,9 +160,13 @@ pub(crate) fn distributions(
                 found.push(Distribution {
                     question: id.clone(),
                     prompt: prompt.clone(),
-                    shape: match *id == chosen && !levels.is_empty() {
-                        true => counts(once_each(&levels), tally),
-                        false => shape(question, language, tally),
+                    shape: match tally.numbers {
+                        Some(numbers) if *id == threshold => Shape::Thresholds(numbers),
+                        Some(numbers) if *id == level => Shape::Levels(numbers),
+                        _ if *id == chosen && !levels.is_empty() => {
+                            counts(once_each(&levels), tally)
+                        }
+                        _ => shape(question, language, tally),
                     },
                 });
             }
