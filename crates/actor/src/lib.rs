@@ -30,7 +30,10 @@ pub use gait::{Gait, gait_bvh};
 #[doc = include_str!("facs.md")]
 ///
 pub use head::SHAPE_NAMES;
-pub use head::{Density, HeadSpec, Identity, MarkerSites, build_head, marker_sites};
+pub use head::{
+    Density, FaceLine, FaceLinePart, HeadSpec, Identity, MarkerSites, build_head, face_lines,
+    marker_sites,
+};
 pub use performance::{
     Clip, Emotion, HeadPose, NOISE_MM, Performance, Phases, Segment, SyntheticTake,
     performance_weights, range_of_motion, range_of_motion_take, synthetic_take,

@@ -12,6 +12,7 @@ mod hair;
 mod identity;
 mod lashes;
 mod layout;
+mod lines;
 mod lips;
 mod mouth_parts;
 mod muscles;
@@ -25,6 +26,7 @@ mod topology;
 pub(crate) mod vec3;
 
 pub use identity::Identity;
+pub use lines::{FaceLine, FaceLinePart, face_lines};
 use muscles::HEAD_SHAPES;
 pub use muscles::SHAPE_NAMES;
 pub use sites::{MarkerSites, marker_sites};

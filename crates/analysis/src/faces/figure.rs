@@ -2,6 +2,7 @@
 
 use mimique_stats::{GroupImage, UnitCourse};
 
+use super::played::{DrawnHead, PlayedWords};
 use crate::report::figure::LINES;
 use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, diverging};
 
@@ -85,16 +86,18 @@ fn legend(svg: &mut Svg, words: &ImageWords, most: f64, y: f64) {
     svg.text(left + 146.0, y + 9.0, "small", Anchor::Start, &format!("{more}, z = {most:.1}"));
 }
 
-/// The mean course of each unit of a face, one line a unit.
+/// The face that moves, and below it the mean course of each of its units, one line a unit.
 pub(super) fn face(
     title: &str,
-    courses: &[UnitCourse],
-    lasts_s: f64,
+    (courses, lasts_s): (&[UnitCourse], f64),
+    (head, id, played): (&DrawnHead, &str, &PlayedWords<'_>),
     [activation, seconds]: [&str; 2],
 ) -> String {
     let keys = courses.len().div_ceil(5) as f64;
-    let (top, bottom) = (40.0 + 18.0 * keys, 196.0 + 18.0 * keys);
+    let above = DrawnHead::HEIGHT;
+    let (top, bottom) = (above + 40.0 + 18.0 * keys, above + 196.0 + 18.0 * keys);
     let mut svg = Svg::new(title, bottom + 40.0);
+    head.draw(&mut svg, (id, played), (courses, lasts_s), 4.0);
     svg.text(LEFT, top - 12.0, "strong", Anchor::Start, activation);
     let height = Axis::new(0.0, 1.0, bottom, top);
     for value in &height.ticks {
@@ -113,7 +116,7 @@ pub(super) fn face(
             .map(|(bin, value)| [x(bin), height.place(*value)])
             .collect();
         svg.coloured_path(&points, line);
-        let key = [LEFT + 72.0 * (place % 5) as f64, 16.0 + 18.0 * (place / 5) as f64];
+        let key = [LEFT + 72.0 * (place % 5) as f64, above + 16.0 + 18.0 * (place / 5) as f64];
         svg.coloured_path(&[[key[0], key[1] - 4.0], [key[0] + 16.0, key[1] - 4.0]], line);
         svg.text(key[0] + 21.0, key[1], "small", Anchor::Start, &course.unit);
     }

@@ -1,6 +1,7 @@
 //! Blocks of reverse correlation in the report: which action units at which times go with which answer.
 
 mod figure;
+mod played;
 mod section;
 
 use std::collections::HashMap;

@@ -3,6 +3,7 @@
 use mimique_stats::{CategoryImages, GroupImage, UnitCourse, UnitImage};
 
 use super::figure::{ImageWords, face, image};
+use super::played::{DrawnHead, PlayedWords};
 use super::{BlockImages, FoundImages, PERMUTATIONS, images};
 use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
@@ -55,12 +56,13 @@ impl Writer<'_> {
                 format!("Erreur : les poids montrés dans {count} essais ne sont pas ceux que la graine redonne. Ces essais sont écartés ; voyez la colonne weights_expected."),
             )));
         }
+        let head = DrawnHead::new();
         for category in images.categories.iter().filter(|category| category.answers > 0) {
-            self.category(found, category);
+            self.category(&head, found, category);
         }
     }
 
-    fn category(&mut self, found: &BlockImages, category: &CategoryImages) {
+    fn category(&mut self, head: &DrawnHead, found: &BlockImages, category: &CategoryImages) {
         let language = self.language();
         let name = self.option(&found.block, &category.category);
         self.blocks.push(Block::Heading(3, name.clone()));
@@ -85,7 +87,7 @@ impl Writer<'_> {
         self.image_figure(found, &name, category, &group);
         self.unit_table(found, &name, category, &group);
         if !group.face.is_empty() {
-            self.face_figure(found, &name, category, &group.face);
+            self.face_figure(head, found, (&name, category), &group.face);
         }
     }
 
@@ -192,21 +194,27 @@ impl Writer<'_> {
     /// The face in mind; its data are recorded weights, which every avatar plays.
     fn face_figure(
         &mut self,
+        head: &DrawnHead,
         found: &BlockImages,
-        name: &str,
-        category: &CategoryImages,
+        (name, category): (&str, &CategoryImages),
         courses: &[UnitCourse],
     ) {
         let language = self.language();
         let id = format!("{}-{}-face", slug(&found.block), slug(&category.category));
         let caption = language.pick(
-            format!("{name}: the face that people have in mind, mean activation of each unit that goes with it. The figure’s table is a file of recorded weights: open it in the studio, or as a capture of a study, to see the face move"),
-            format!("{name} : le visage que les gens ont en tête, activation moyenne de chaque unité qui l’accompagne. Le tableau de la figure est un fichier de poids enregistrés : ouvrez-le dans le studio, ou comme capture d’une étude, pour voir bouger le visage"),
+            format!("{name}: the face that people have in mind, drawn on the built-in head, and the mean activation of each unit that goes with it. The figure’s table is a file of recorded weights: open it in the studio, or as a capture of a study, to see the face move"),
+            format!("{name} : le visage que les gens ont en tête, dessiné sur la tête intégrée, et l’activation moyenne de chaque unité qui l’accompagne. Le tableau de la figure est un fichier de poids enregistrés : ouvrez-le dans le studio, ou comme capture d’une étude, pour voir bouger le visage"),
         );
         let bins = found.images.times_s.len();
         let width = found.images.times_s.first().map_or(1.0, |first| 2.0 * first);
         let axes = language.pick(["activation", "seconds"], ["activation", "secondes"]);
-        let svg = face(&caption, courses, width * bins as f64, axes);
+        let played = PlayedWords {
+            press: language
+                .pick("Press the face to see it move", "Appuyez sur le visage pour le voir bouger"),
+            seconds: "s",
+        };
+        let of_face = (courses, width * bins as f64);
+        let svg = face(&caption, of_face, (head, &format!("{id}-played"), &played), axes);
         let names = courses.iter().map(|course| course.unit.clone());
         let columns = ["frame".to_owned(), "time".to_owned()].into_iter().chain(names);
         let mut data = DataTable::new(&id, &caption, columns);
@@ -225,9 +233,9 @@ impl Writer<'_> {
         };
         let peaks: Vec<String> = courses.iter().map(peak).collect();
         let alt = language.pick(
-            format!("Lines over the seconds of the clip, highest: {}.", peaks.join(", ")),
+            format!("A face in lines, still at four moments and moving when it is pressed; below it lines over the seconds of the clip, highest: {}.", peaks.join(", ")),
             format!(
-                "Courbes au fil des secondes de l’extrait, au plus haut : {}.",
+                "Un visage au trait, immobile à quatre moments et en mouvement quand on appuie dessus ; au-dessous, des courbes au fil des secondes de l’extrait, au plus haut : {}.",
                 peaks.join(", ")
             ),
         );

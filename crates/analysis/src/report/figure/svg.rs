@@ -16,6 +16,19 @@ pub struct Svg {
     body: String,
     height: f64,
     title: String,
+    /// Whether a part of it is played: what can be pressed is no picture.
+    is_playable: bool,
+}
+
+/// A line that moves when the part of the drawing is pressed that it belongs to.
+#[derive(Clone, Copy)]
+pub(crate) struct Moving<'i> {
+    /// What is pressed; none of a line that stays still.
+    pub id: Option<&'i str>,
+    /// The frame that is drawn where nothing moves.
+    pub still: usize,
+    /// How long it moves, seconds.
+    pub lasts_s: f64,
 }
 
 /// Where a text is anchored.
@@ -32,7 +45,7 @@ pub enum Anchor {
 impl Svg {
     /// An empty drawing of a height; its title says what it shows.
     pub fn new(title: &str, height: f64) -> Self {
-        Self { body: String::new(), height, title: title.to_owned() }
+        Self { body: String::new(), height, title: title.to_owned(), is_playable: false }
     }
 
     /// A line of text.
@@ -122,6 +135,48 @@ impl Svg {
         );
     }
 
+    /// Begins a part that is played when it is pressed.
+    pub(crate) fn begin_playable(&mut self, id: &str, label: &str) {
+        self.is_playable = true;
+        let label = escape(label);
+        let _ = writeln!(self.body, r##"<a href="#{id}" id="{id}" aria-label="{label}">"##);
+    }
+
+    /// Ends it.
+    pub(crate) fn end_playable(&mut self) {
+        self.body.push_str("</a>\n");
+    }
+
+    /// A line at each of its frames.
+    pub(crate) fn moving_path(
+        &mut self,
+        frames: &[&[[f64; 2]]],
+        closed: bool,
+        class: &str,
+        moving: Moving<'_>,
+    ) {
+        let path = moving_outline(frames, closed, &format!(r#" class="{class}""#), moving);
+        let _ = writeln!(self.body, "{path}");
+    }
+
+    /// An iris behind the opening between the lids, whose first frame is at rest: the opening's `number` in the face.
+    pub(crate) fn iris(&mut self, opening: &[&[[f64; 2]]], number: usize, moving: Moving<'_>) {
+        let Some(rest) = opening.first().filter(|rest| !rest.is_empty()) else { return };
+        let middle = |axis: usize| rest.iter().map(|p| p[axis]).sum::<f64>() / rest.len() as f64;
+        let xs = || rest.iter().map(|point| point[0]);
+        let width = xs().fold(f64::MIN, f64::max) - xs().fold(f64::MAX, f64::min);
+        let [x, y] = [middle(0), middle(1)];
+        let own = moving.id.map_or_else(|| format!("{}-{}", short(x), short(y)), str::to_owned);
+        let id = format!("{own}-iris-{number}").replace('.', "_");
+        let clip = moving_outline(opening, true, "", moving);
+        let (radius, pupil) = (short(0.21 * width), short(0.1 * width));
+        let [x, y] = [short(x), short(y)];
+        let _ = writeln!(
+            self.body,
+            r##"<clipPath id="{id}">{clip}</clipPath><g clip-path="url(#{id})"><circle cx="{x}" cy="{y}" r="{radius}" class="iris"/><circle cx="{x}" cy="{y}" r="{pupil}" class="pupil"/></g>"##
+        );
+    }
+
     /// A filled circle.
     pub fn circle(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
@@ -146,19 +201,54 @@ impl Svg {
     /// The drawing as text.
     pub fn finish(self) -> String {
         format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" class="mm-figure" aria-label="{title}">
+            r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="{role}" class="mm-figure" aria-label="{title}">
 <style>{STYLE}</style>
 <rect width="{WIDTH}" height="{height}" class="paper"/>
 {body}</svg>
 "#,
             height = short(self.height),
+            role = if self.is_playable { "group" } else { "img" },
             title = escape(&self.title),
             body = self.body
         )
     }
 }
 
+/// The path of a line; where it belongs to something that is pressed, with its frames.
+fn moving_outline(
+    frames: &[&[[f64; 2]]],
+    closed: bool,
+    attributes: &str,
+    moving: Moving<'_>,
+) -> String {
+    let outline = |points: &[[f64; 2]]| {
+        let points: Vec<String> =
+            points.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
+        format!("M{}{}", points.join("L"), if closed { "Z" } else { "" })
+    };
+    let still = frames.get(moving.still).map_or_else(String::new, |points| outline(points));
+    let moves = frames.windows(2).any(|pair| pair[0] != pair[1]);
+    match moving.id.filter(|_| moves) {
+        None => format!(r#"<path d="{still}"{attributes}/>"#),
+        Some(id) => {
+            let values: Vec<String> = frames.iter().map(|points| outline(points)).collect();
+            format!(
+                r#"<path d="{still}"{attributes}><animate attributeName="d" begin="{id}.click" dur="{}s" values="{}"/></path>"#,
+                short(moving.lasts_s),
+                values.join(";")
+            )
+        }
+    }
+}
+
 const STYLE: &str = "\
+.mm-figure .backdrop{fill:#f2f5f8}\
+.mm-figure .feature{fill:none;stroke:#555e68;stroke-width:1.2;stroke-linecap:round;stroke-linejoin:round}\
+.mm-figure .brow{fill:none;stroke:#1c2126;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}\
+.mm-figure .lips{fill:#e7c9c4;stroke:#7a3b32;stroke-width:1}\
+.mm-figure .opening{fill:#fff;stroke:#1c2126;stroke-width:1.4;stroke-linejoin:round}\
+.mm-figure .iris{fill:#7a8794}.mm-figure .pupil{fill:#10151a}\
+.mm-figure a:focus-visible .backdrop{stroke:#0a4f86;stroke-width:2}\
 .mm-figure{font:13px system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}\
 .mm-figure text{fill:#1c2126;font-variant-numeric:tabular-nums}\
 .mm-figure .soft{fill:#555e68}\
