@@ -3,7 +3,8 @@
 use mimique_stats::{Detection, TestResult as _};
 use mimique_study::TRACE_HZ;
 
-use super::checks::{Check, Collector};
+use super::check::Check;
+use super::checks::Collector;
 use crate::hypothesis::call::{Call, Design};
 use crate::report::results::Results;
 use crate::report::section::detection::CategoryDetection;
@@ -57,16 +58,13 @@ impl Collector {
         }
         let call = Call::new(Design::Detection, Detection::NAMES.function);
         let call = call.text(response).text(&found.category).text(factor).list(levels);
-        self.checks.push(Check {
-            key,
-            call,
-            values: vec![
-                ("statistic", t.statistic),
-                ("p", t.p),
-                ("effect", people.d_prime_mean),
-                ("n", people.people as f64),
-            ],
-        });
+        let values = vec![
+            ("statistic", t.statistic),
+            ("p", t.p),
+            ("effect", people.d_prime_mean),
+            ("n", people.people as f64),
+        ];
+        self.checks.push(Check::new(key, call, values));
     }
 
     /// Means of ratings that follow the clip, every half a second and at the end.
@@ -83,19 +81,17 @@ impl Collector {
                     }
                     let call = Call::new(Design::Course, "mean_and_interval");
                     let call = call.text(&own.response).text(&own.factor).text(&level.level);
-                    self.checks.push(Check {
-                        key: format!(
-                            "trace:{}:{}:{}:{}",
-                            own.response,
-                            own.factor,
-                            level.level,
-                            instant + 1
-                        ),
-                        call: call.number(instant + 1),
-                        values,
-                    });
+                    let key = format!(
+                        "trace:{}:{}:{}:{}",
+                        own.response,
+                        own.factor,
+                        level.level,
+                        instant + 1
+                    );
+                    self.checks.push(Check::new(key, call.number(instant + 1), values));
                 }
             }
+            self.trace_pairs(own);
         }
     }
 }
