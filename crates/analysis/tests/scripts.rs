@@ -1,6 +1,8 @@
 //! `analysis.R` and `analysis.py` as a reader runs them: every number of the report once more, by other
 //! programs.
 
+#[path = "support/confident.rs"]
+mod confident;
 #[path = "support/followed.rs"]
 mod followed;
 #[path = "support/equivalence.rs"]
@@ -16,6 +18,7 @@ mod support;
 
 use std::process::Command;
 
+use confident::confident;
 use followed::{followed, followers};
 use hypothesis_of::equivalence;
 use mimique_analysis::{Language, Report, Simulation, analyze};
@@ -52,8 +55,8 @@ fn reports() -> Vec<(&'static str, Report)> {
     .into_iter()
     .map(|(name, study, raters)| (name, report(&study, &export(&study, &raters))))
     .collect();
-    // Enough signals for everybody's own d' by method.
-    let mut often = demo_study();
+    // Enough signals for everybody's own d' by method, and area below the ROC curve.
+    let mut often = confident(demo_study());
     (often.exclusions, often.hypotheses) = (None, Vec::new());
     reports.push(("often", report(&often, &export_of_passes(&often, 8, 6))));
     // A rating that follows the clip.
@@ -108,6 +111,8 @@ fn d_primes_by_method_and_courses_are_computed_again() {
         "detection:emotion:method:anger:box effect",
         "detection:emotion:method:anger:d':box | lsts p",
         "detection:emotion:method:anger:c:box | lsts p_holm",
+        "roc:emotion:anger low",
+        "roc:emotion:anger:all hits.3",
     ] {
         assert!(often.iter().any(|own| own == key), "{key}");
     }

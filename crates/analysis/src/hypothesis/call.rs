@@ -61,6 +61,8 @@ pub(crate) enum Design {
     DetectionBlocks,
     /// Differences of these between two levels, one per person.
     DetectionPeople,
+    /// What each person was shown and answered, how surely, and a category.
+    Confidence,
     /// Where a rating that follows the clip stands at an instant: one mean per person, of a level.
     Course,
     /// Differences of people's mean courses between two levels.
@@ -107,6 +109,7 @@ impl Design {
             Self::Detection => "of_detection",
             Self::DetectionBlocks => "of_detection_blocks",
             Self::DetectionPeople => "of_detection_people",
+            Self::Confidence => "of_confidence",
             Self::Course => "of_course",
             Self::Courses => "of_courses",
             Self::Items => "of_items",

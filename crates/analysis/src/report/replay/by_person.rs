@@ -8,6 +8,7 @@ use super::checks::Collector;
 use crate::hypothesis::call::{Call, Design};
 use crate::report::results::Results;
 use crate::report::section::detection::CategoryDetection;
+use crate::report::section::roc::of_people;
 
 /// Instants of a course from one check to the next: half a second.
 const INSTANTS: usize = (TRACE_HZ / 2.0) as usize;
@@ -36,6 +37,34 @@ impl Collector {
                         self.person_level(&format!("{key}:c"), &compared.criterion);
                     }
                 }
+            }
+        }
+    }
+
+    /// Areas below ROC curves, and the points of all answers together.
+    pub(super) fn roc(&mut self, results: &Results<'_>) {
+        for own in &results.roc {
+            for category in &own.found.categories {
+                let call = |test| {
+                    let call = Call::new(Design::Confidence, test).text(&own.response);
+                    call.text(&own.confidence).text(&category.category)
+                };
+                let key = format!("roc:{}:{}", own.response, category.category);
+                if let Some(areas) = of_people(category) {
+                    let mut values = vec![("mean", areas.mean), ("n", areas.n as f64)];
+                    if let Some([low, high]) = areas.mean_ci_t {
+                        values.extend([("low", low), ("high", high)]);
+                    }
+                    self.checks.push(Check::new(key.clone(), call("roc"), values));
+                }
+                let Some(curve) = category.pooled.clone().ok() else { continue };
+                let [false_alarms, hits] = [0, 1].map(|place| -> Vec<f64> {
+                    curve.points.iter().map(|point| point[place]).collect()
+                });
+                let values = vec![("area", curve.area)];
+                let check = Check::new(format!("{key}:all"), call("roc_of_all"), values);
+                let check = check.list("false_alarms", &false_alarms).list("hits", &hits);
+                self.checks.push(check);
             }
         }
     }

@@ -94,6 +94,7 @@ impl Collector {
             all.line(format!("course:{}", course.measure), &course.trend);
         }
         all.detection(results);
+        all.roc(results);
         all.traces(results);
         all.thresholds(results);
         all.scalings(results);

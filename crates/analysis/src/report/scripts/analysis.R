@@ -243,7 +243,7 @@ of_people_and_segments <- function(test, y, g, levels) {
   keep <- !is.na(v) & trials[[g]] %in% levels & !is.na(trials$segment)
   test(v[keep], trials[[g]][keep], person[keep], trials$segment[keep])
 }
-# The trials of blocks that choose what is shown, and ratings that follow the clip.
+# Ratings of confidence, blocks that choose what is shown, and ratings that follow the clip.
 @BLOCKS@
 
 # p of a mixed model as Mimique has found it: R comes near it, not to the last digit (the models below).

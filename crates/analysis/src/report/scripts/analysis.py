@@ -340,7 +340,7 @@ def of_people_and_segments(test, y, g, levels):
     return test(v[keep], columns[g][keep], person[keep], columns["segment"][keep])
 
 
-# The trials of blocks that choose what is shown, and ratings that follow the clip.
+# Ratings of confidence, blocks that choose what is shown, and ratings that follow the clip.
 
 
 @BLOCKS@

@@ -1,3 +1,12 @@
+# How surely each person answered, and a category.
+of_confidence <- function(test, question, confidence, category) {
+  truth <- trials[[paste0(question, ".truth")]]
+  answer <- trials[[paste0(question, ".answer")]]
+  sure <- number(confidence)
+  keep <- !is.na(truth) & !is.na(answer) & !is.na(sure)
+  test(person[keep], truth[keep], answer[keep], sure[keep], category)
+}
+
 # The trials of a block of a kind; no face that the seed does not give again is among them.
 of_block <- function(block) which(trials[["shown.block"]] %in% block)
 

@@ -1,3 +1,10 @@
+def of_confidence(test, question, confidence, category):
+    """How surely each person answered, and a category."""
+    truth, answer, sure = columns[question + ".truth"], columns[question + ".answer"], number(confidence)
+    keep = (truth != "") & (answer != "") & ~np.isnan(sure)
+    return test(person[keep].astype(str), truth[keep].astype(str), answer[keep].astype(str), sure[keep], category)
+
+
 def of_block(block):
     """The trials of a block; no face that the seed does not give again is among them."""
     return columns["shown.block"] == block
