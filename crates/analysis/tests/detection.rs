@@ -118,6 +118,37 @@ fn two_d_primes_planted_by_method_are_found_and_compared_within_people() {
     assert_eq!(planes.matches(">d′</text>").count(), 2);
     let tests = file(&report, "tables/emotion-detection-by-method-tests.csv");
     assert_eq!(tests.lines().count(), 1 + 6 * 2, "{tests}");
+    // Every emotion is read with the higher level first and the difference of the table.
+    let page = file(&report, "report.md");
+    let reading = page.lines().find(|line| line.contains("d′, one value per person")).unwrap();
+    assert_eq!(reading.matches(" over ").count(), 6, "{reading}");
+    for own in by[0]["categories"].as_array().unwrap() {
+        let difference = &own["compared"]["d_prime"]["pairs"][0]["difference"]["estimate"];
+        let words = format!("by {:.2}, p", -difference.as_f64().unwrap());
+        assert!(reading.contains(&words), "{words}: {reading}");
+    }
+    let french = analyze(&table, &study, Language::French).unwrap();
+    let french = file(&french, "report.md");
+    assert!(french.contains("d′, une valeur par personne, diffère entre les niveaux"), "{french}");
+}
+
+#[test]
+fn where_methods_are_alike_no_difference_of_d_prime_is_read() {
+    for (language, words) in [
+        (Language::English, "no difference of d′ by"),
+        (Language::French, "aucune différence de d′ selon"),
+    ] {
+        let report = report(20, language);
+        let found = file(&report, "report.md");
+        let reading = found.lines().find(|line| line.contains(words));
+        let results: Value = serde_json::from_str(file(&report, "results.json")).unwrap();
+        let categories = results["detection"][0]["by"][0]["categories"].as_array().unwrap();
+        let p = |own: &&Value| {
+            own["compared"]["d_prime"]["pairs"][0]["wilcoxon"]["p_value"].as_f64().unwrap() >= 0.05
+        };
+        let alike = categories.iter().filter(p).count();
+        assert!(alike > 0 && reading.is_some(), "{alike}: {found}");
+    }
 }
 
 #[test]

@@ -136,9 +136,21 @@ fn effects_of(count: usize, sd: f64, random: &mut Random) -> Vec<f64> {
 
 #[test]
 fn planted_thresholds_and_deviations_are_in_the_figures() {
+    planted_in_the_figures(&[-3.0, -1.5, -0.5, 0.5, 1.5, 3.0], [0.2, 0.06]);
+}
+
+/// Two points of the scale are used: one threshold, a binomial model.
+#[test]
+fn a_planted_share_and_deviations_of_two_ratings_are_in_the_figures() {
+    planted_in_the_figures(&[0.4], [0.35, 0.08]);
+}
+
+/// Ratings of people and clips that differ, cut at thresholds: the figures of the mixed model have the planted shares
+/// of each level and the planted standard deviations, to `near_share` and `near_sd`.
+fn planted_in_the_figures(thresholds: &[f64], [near_sd, near_share]: [f64; 2]) {
     let mut study = demo_study();
     study.exclusions = None;
-    let (thresholds, effect) = ([-3.0, -1.5, -0.5, 0.5, 1.5, 3.0], 1.0);
+    let effect = 1.0;
     let terms = [
         ("people", 60, 1.2),
         ("people × method", 120, 0.6),
@@ -180,7 +192,7 @@ fn planted_thresholds_and_deviations_are_in_the_figures() {
     for (row, (name, _, planted)) in terms.into_iter().enumerate() {
         assert_eq!(drawn.cell(row, 0), Some(name));
         let sd: f64 = drawn.cell(row, 1).unwrap().parse().unwrap();
-        assert!((sd - planted).abs() < 0.2, "{name}: {sd}, planted {planted}");
+        assert!((sd - planted).abs() < near_sd, "{name}: {sd}, planted {planted}");
     }
     let shares = file("tables/figure-hypothesis-ID-other-clips-shares.csv");
     let shares = Table::parse(shares.into_bytes()).unwrap();
@@ -199,18 +211,20 @@ fn planted_thresholds_and_deviations_are_in_the_figures() {
             None => 1.0,
         };
         let mut before = 0.0;
-        for place in 0..7 {
+        for place in 0..=thresholds.len() {
             let planted = below(place) - before;
             before = below(place);
             let own = number(row, 2 + place);
             assert!(
-                (own - planted).abs() < 0.06,
+                (own - planted).abs() < near_share,
                 "{level} {}: {own}, planted {planted}",
                 place + 1
             );
         }
     }
-    assert_eq!(model["ratings"].as_array().unwrap().len(), 7);
+    assert_eq!(model["ratings"].as_array().unwrap().len(), thresholds.len() + 1);
+    let bars = file("figures/hypothesis-ID-other-clips-sd.svg");
+    assert_eq!(bars.matches("class=\"box\"").count(), terms.len(), "a bar for each");
     for name in ["shares", "sd"] {
         let svg = file(&format!("figures/hypothesis-ID-other-clips-{name}.svg"));
         assert!(svg.contains("aria-label=") && !svg.contains("NaN"), "{svg}");

@@ -103,6 +103,7 @@ pub use test::reverse_correlation::{
     CategoryImages, GroupImage, PersonImage, ReverseCorrelation, ReverseCorrelationOptions,
     ReverseTrial, ReverseTrials, UnitCourse, UnitImage, UnitTest, reverse_correlation,
 };
+pub use test::roc::{CategoryRoc, PersonArea, Roc, RocCurve, roc};
 pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use test::sign::{Sign, sign};
 pub use test::spearman::{Spearman, bonett_wright_interval, spearman};

@@ -25,6 +25,12 @@ pub(crate) const PERMUTATIONS: usize = 1000;
 pub(crate) struct BlockImages {
     /// Name of the component.
     pub block: String,
+    /// Its question.
+    #[serde(skip)]
+    pub question: String,
+    /// Duration of a clip, seconds.
+    #[serde(skip)]
+    pub duration_s: f64,
     /// Trials left out because the weights that were shown are not those that the seed gives.
     pub not_replayed: usize,
     /// What the answers give.
@@ -53,6 +59,8 @@ pub(crate) fn images(export: &Export, study: &Study, permutations: usize) -> Vec
             block: name.to_owned(),
             found: reverse_correlation(&trials, options).ok().map(|images| BlockImages {
                 block: name.to_owned(),
+                question: block.question.clone(),
+                duration_s: block.duration_seconds,
                 not_replayed,
                 images,
             }),

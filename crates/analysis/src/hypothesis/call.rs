@@ -3,7 +3,7 @@
 /// One argument.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Argument {
-    /// A number that is not computed again.
+    /// A number as it is: of a model, of the study file.
     Given(f64),
     Text(String),
     List(Vec<String>),
@@ -61,10 +61,22 @@ pub(crate) enum Design {
     DetectionBlocks,
     /// Differences of these between two levels, one per person.
     DetectionPeople,
+    /// What each person was shown and answered, how surely, and a category.
+    Confidence,
     /// Where a rating that follows the clip stands at an instant: one mean per person, of a level.
     Course,
+    /// Differences of people's mean courses between two levels.
+    Courses,
     /// Items of a scale, a row per person.
     Items,
+    /// Right answers of a person by level, of an adaptive block.
+    AnswersByLevel,
+    /// Thresholds that were computed above, those within the levels.
+    Found,
+    /// Judgements of a block of difference scaling.
+    Judgements,
+    /// Faces of a block of reverse correlation: heights of units, and who answered with a category.
+    Faces,
     /// A p that a model gives, which only the script in R fits, and only nearly.
     Given,
 }
@@ -97,8 +109,14 @@ impl Design {
             Self::Detection => "of_detection",
             Self::DetectionBlocks => "of_detection_blocks",
             Self::DetectionPeople => "of_detection_people",
+            Self::Confidence => "of_confidence",
             Self::Course => "of_course",
+            Self::Courses => "of_courses",
             Self::Items => "of_items",
+            Self::AnswersByLevel => "of_answers_by_level",
+            Self::Found => "of_found",
+            Self::Judgements => "of_judgements",
+            Self::Faces => "of_faces",
             Self::Given => "given",
         }
     }

@@ -17,6 +17,7 @@ use crate::report::section::course::Course;
 use crate::report::section::detection::QuestionDetection;
 use crate::report::section::layouts::LayoutCell;
 use crate::report::section::panels::PanelResult;
+use crate::report::section::roc::QuestionRoc;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
 use crate::report::section::traces::MeanTraces;
 use crate::scaling::BlockScale;
@@ -52,6 +53,9 @@ pub(crate) struct Results<'a> {
     pub faces: Vec<BlockImages>,
     /// Of forced choices, category by category.
     pub detection: Vec<QuestionDetection>,
+    /// Of forced choices with a rating of confidence.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub roc: Vec<QuestionRoc>,
     /// About the clips, question by question.
     pub agreement: Vec<Agreement>,
     /// Scales that the study file declares.
@@ -85,6 +89,7 @@ impl Results<'_> {
         self.scalings.extend(part.scalings);
         self.faces.extend(part.faces);
         self.detection.extend(part.detection);
+        self.roc.extend(part.roc);
         self.agreement.extend(part.agreement);
         self.scales.extend(part.scales);
         self.panels.extend(part.panels);

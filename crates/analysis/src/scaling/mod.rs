@@ -6,7 +6,7 @@ mod section;
 use std::collections::HashMap;
 
 use mimique_stats::{DifferenceJudgement, DifferenceScale, Outcome, difference_scaling};
-use mimique_study::{KindOfQuestion as _, ScalingComponent, ScalingRule, Study};
+use mimique_study::{Choice, KindOfQuestion as _, ScalingComponent, ScalingRule, Study};
 use serde::Serialize;
 
 use crate::trials::export::{Answer, Export};
@@ -19,6 +19,12 @@ pub(crate) const ROUNDS: usize = 2000;
 pub(crate) struct BlockScale {
     /// Name of the component.
     pub block: String,
+    /// Its question.
+    #[serde(skip)]
+    pub question: String,
+    /// The answer that the second pair differs more.
+    #[serde(skip)]
+    pub second: String,
     /// The parameter.
     pub parameter: String,
     /// Of all people together.
@@ -29,23 +35,23 @@ pub(crate) struct BlockScale {
 /// `rounds` draws of people.
 pub(crate) fn scales(export: &Export, study: &Study, rounds: usize) -> Vec<BlockScale> {
     let of = |(name, block): (&str, ScalingComponent)| {
-        let judgements = judgements(export, study, name, &block);
+        let question = study.questions.iter().find(|question| question.id == block.question)?;
+        let options: &[Choice; 2] = question.kind.options().try_into().ok()?;
+        let judgements = judgements(export, name, &block, options);
         let scale = difference_scaling(&judgements, rounds, study.seed).ok()?;
-        Some(BlockScale { block: name.to_owned(), parameter: block.parameter, scale })
+        let ScalingComponent { question, parameter, .. } = block;
+        let second = options[1].value.clone();
+        Some(BlockScale { block: name.to_owned(), question, second, parameter, scale })
     };
     study.scalings().filter_map(of).collect()
 }
 
 fn judgements(
     export: &Export,
-    study: &Study,
     name: &str,
     block: &ScalingComponent,
+    [first, second]: &[Choice; 2],
 ) -> Vec<DifferenceJudgement> {
-    let question = study.questions.iter().find(|question| question.id == block.question);
-    let Some([first, second]) = question.map(|question| question.kind.options()) else {
-        return Vec::new();
-    };
     let mut places: HashMap<usize, usize> = HashMap::new();
     let mut judged = |answer: &Answer| {
         let (own, levels) = export.trials[answer.trial].scaled.as_ref()?;

@@ -17,7 +17,7 @@ impl Writer<'_> {
 
     fn scaling(&mut self, block: &BlockScale) {
         let language = self.language();
-        let BlockScale { block: name, parameter, scale } = block;
+        let BlockScale { block: name, parameter, scale, .. } = block;
         self.blocks.push(Block::Heading(
             2,
             language.pick(format!("Perceived scale: {name}"), format!("Échelle perçue : {name}")),

@@ -113,6 +113,9 @@ const INTENSITY_STEP: f64 = 0.15;
 /// How far the anchor of a panel is rated below the other conditions, of 100 points.
 const ANCHOR_BELOW: f64 = 30.0;
 
+/// By how much confidence is higher after a right answer, in standard deviations of its noise.
+const SURER_IF_RIGHT: f64 = 1.0;
+
 impl Parameters {
     /// The default parameters of a study.
     pub fn for_study(study: &Study) -> Self {
@@ -280,6 +283,7 @@ fn recognised(study: &Study, levels: &Levels, question: &Question) -> Recognitio
         clip_sd: 0.05,
         effects,
         interactions,
+        confidence: question.kind.confidence().map_or(0.0, |_| SURER_IF_RIGHT),
     }
 }
 

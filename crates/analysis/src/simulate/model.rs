@@ -30,6 +30,17 @@ pub(crate) struct Model<'s> {
 pub(crate) struct Asked<'s> {
     pub question: &'s Question,
     pub way: Way,
+    /// Of a rating of confidence.
+    pub confidence: Option<Confidence>,
+}
+
+/// What a rating of confidence follows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Confidence {
+    /// Place of the choice among the questions.
+    pub choice: usize,
+    /// How much higher it is after a right answer than after a wrong one, points.
+    pub rise: f64,
 }
 
 /// How a question is answered.
@@ -112,7 +123,19 @@ impl<'s> Model<'s> {
         for question in study.all_questions() {
             let way = model.way(question);
             model.question_places.insert(question.id.clone(), model.questions.len());
-            model.questions.push(Asked { question, way });
+            model.questions.push(Asked { question, way, confidence: None });
+        }
+        for choice in 0..model.questions.len() {
+            let question = model.questions[choice].question;
+            let rating = question.kind.confidence().and_then(|rating| model.question(rating));
+            let rise = parameters.recognition.get(&question.id).map(|own| own.confidence);
+            let (Some(rating), Some(rise)) = (rating, rise) else { continue };
+            if let Way::Scales(rated) = &model.questions[rating].way
+                && let [one] = rated.as_slice()
+            {
+                let rise = rise * one.noise_sd;
+                model.questions[rating].confidence = Some(Confidence { choice, rise });
+            }
         }
         model
     }

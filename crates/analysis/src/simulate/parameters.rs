@@ -131,6 +131,14 @@ pub struct Recognition {
     pub effects: BTreeMap<String, ByLevel>,
     /// Shifts of combinations.
     pub interactions: Vec<Interaction>,
+    /// Where the question names a rating of `confidence`: by how much this is higher after a right answer than after a
+    /// wrong one, in standard deviations of its noise.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub confidence: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// A choice between two clips: Bradley and Terry's model with Davidson's ties and a side bias.

@@ -25,6 +25,8 @@ pub(crate) struct Person<'m> {
     display: Draws,
     pace: f64,
     slow: bool,
+    /// The last choice that is right or wrong: place of its question, and which it was.
+    chosen: Option<(usize, bool)>,
 }
 
 /// What a person answers by.
@@ -141,6 +143,7 @@ impl<'m> Person<'m> {
             display: draws("display"),
             pace,
             slow,
+            chosen: None,
         };
         for question in model.study.demographics.iter().flat_map(|page| &page.questions) {
             if question.is_shown(&new.about, &Answers::new())
@@ -202,8 +205,18 @@ impl<'m> Person<'m> {
         beside: Option<Companion>,
         trial: usize,
     ) -> Option<Raw> {
-        let seen = Some(Seen { clip, beside, shift: 0.0 });
-        self.mind.answer(&mut self.answers, question, seen, trial)
+        let asked = &self.mind.model.questions[question];
+        let shift = asked.confidence.map_or(0.0, |sure| match self.chosen {
+            Some((choice, true)) if choice == sure.choice => sure.rise / 2.0,
+            Some((choice, false)) if choice == sure.choice => -sure.rise / 2.0,
+            _ => 0.0,
+        });
+        let seen = Some(Seen { clip, beside, shift });
+        let raw = self.mind.answer(&mut self.answers, question, seen, trial);
+        if let (Some(Raw::Option(option)), Way::Recognised(own)) = (&raw, &asked.way) {
+            self.chosen = own.clips[clip].as_ref().map(|row| (question, row.right == *option));
+        }
+        raw
     }
 
     /// The rating of a clip of a panel, moved by what its page has in common.

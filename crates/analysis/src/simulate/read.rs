@@ -238,6 +238,7 @@ fn check_recognition(
         ("personSd", recognition.person_sd),
         ("segmentSd", recognition.segment_sd),
         ("clipSd", recognition.clip_sd),
+        ("confidence", recognition.confidence),
     ] {
         deviation(&at(key), sd)?;
     }

@@ -23,6 +23,9 @@ pub(crate) const ROUNDS: usize = 1000;
 pub(crate) struct BlockThresholds {
     /// Name of the component.
     pub block: String,
+    /// Its question.
+    #[serde(skip)]
+    pub question: String,
     /// The varied parameter.
     pub parameter: String,
     /// Its lowest and highest level.
@@ -109,7 +112,8 @@ pub(crate) fn thresholds(export: &Export, study: &Study, rounds: usize) -> Vec<B
         let parameter = block.vary.parameter.clone();
         let levels = ends(&block.vary);
         let falls = block.vary.from > block.vary.to;
-        BlockThresholds { block: name.to_owned(), parameter, levels, falls, people, mean }
+        let question = block.question.clone();
+        BlockThresholds { block: name.to_owned(), question, parameter, levels, falls, people, mean }
     };
     let all = study.adaptive().map(of);
     all.filter(|block| !block.people.is_empty()).collect()

@@ -17,7 +17,7 @@ use crate::test::{
     aligned_rank_transform, bradley_terry, chi_square, cluster_permutation, consistency, cronbach,
     detection, difference_scaling, equivalence, friedman, intraclass_correlation, krippendorff,
     kruskal_wallis, mann_whitney, min_f, mixed_model, panel, psychometric, reverse_correlation,
-    scheirer_ray_hare, sign, spearman, thurstone, wilcoxon,
+    roc, scheirer_ray_hare, sign, spearman, thurstone, wilcoxon,
 };
 use crate::{adjust, summary};
 use arguments::{Arguments, ProcedureOption};
@@ -83,7 +83,7 @@ pub enum Sample {
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 27] = [
+pub static PROCEDURES: [&Procedure; 28] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -103,6 +103,7 @@ pub static PROCEDURES: [&Procedure; 27] = [
     &psychometric::PROCEDURE,
     &difference_scaling::PROCEDURE,
     &detection::PROCEDURE,
+    &roc::PROCEDURE,
     &reverse_correlation::PROCEDURE,
     &cluster_permutation::PROCEDURE,
     &intraclass_correlation::PROCEDURE,

@@ -22,7 +22,7 @@ use crate::undefined::NoEstimate;
 use crate::words::{format_number, format_p};
 
 /// Signals of a person below which the person's own d' says little.
-const FEW_SIGNALS: u64 = 5;
+pub(crate) const FEW_SIGNALS: u64 = 5;
 
 /// What was answered to signals and to noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

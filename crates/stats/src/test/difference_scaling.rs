@@ -270,7 +270,13 @@ difference_scaling <- function(levels, answer) {
   fit <- glm.fit(x, answer, family = binomial("probit"), intercept = FALSE,
     control = glm.control(epsilon = 1e-14, maxit = 200))
   psi <- unname(fit$coefficients)
-  c(last = psi[length(psi)], middle = psi[length(psi) %/% 2], loglik = -fit$deviance / 2)
+  # Standard errors by the observed information.
+  signed <- x * ifelse(answer == 1, 1, -1)
+  z <- drop(signed %*% psi)
+  ratio <- exp(dnorm(z, log = TRUE) - pnorm(z, log.p = TRUE))
+  se <- sqrt(diag(solve(crossprod(signed, ratio * (ratio + z) * signed))))
+  named <- function(name, values) setNames(c(0, values), paste(name, seq_along(known), sep = "."))
+  c(named("psi", psi), named("se", se), loglik = -fit$deviance / 2)
 }
 "#,
     python: r#"
@@ -298,8 +304,14 @@ def difference_scaling(levels, answer):
         return -x.T @ np.exp(stats.norm.logpdf(z) - stats.norm.logcdf(z))
 
     found = minimize(minus_likelihood, np.zeros(len(known) - 1), jac=slope, method="BFGS", options=dict(gtol=1e-10))
-    psi = found.x
-    return dict(last=psi[-1], middle=psi[len(psi) // 2 - 1], loglik=-found.fun)
+    z = x @ found.x
+    ratio = np.exp(stats.norm.logpdf(z) - stats.norm.logcdf(z))
+    # Standard errors by the observed information.
+    se = np.sqrt(np.diag(np.linalg.inv(x.T @ ((ratio * (ratio + z))[:, None] * x))))
+    named = {"psi.1": 0.0, "se.1": 0.0, "loglik": -found.fun}
+    for place, (psi, error) in enumerate(zip(found.x, se)):
+        named.update({f"psi.{place + 2}": psi, f"se.{place + 2}": error})
+    return named
 "#,
     golden_cases: "",
 };

@@ -20,6 +20,7 @@ pub(crate) mod mixed_model;
 pub(crate) mod panel;
 pub(crate) mod psychometric;
 pub(crate) mod reverse_correlation;
+pub(crate) mod roc;
 pub(crate) mod scheirer_ray_hare;
 pub(crate) mod sign;
 pub(crate) mod spearman;

@@ -286,9 +286,12 @@ pub fn told(procedure: &str) -> &'static [(&'static str, &'static str)] {
             ("high", "/interval_95_feldt/1"),
         ],
         "krippendorff" => &[("alpha", "/levels/ordinal/alpha")],
-        "difference-scaling" => {
-            &[("last", "/scale/4"), ("middle", "/scale/2"), ("loglik", "/loglik")]
-        }
+        "difference-scaling" => &[
+            ("psi.5", "/scale/4"),
+            ("psi.3", "/scale/2"),
+            ("se.3", "/se/2"),
+            ("loglik", "/loglik"),
+        ],
         "psychometric" => {
             &[("location", "/location"), ("scale", "/scale_or_shape"), ("loglik", "/loglik")]
         }

@@ -491,6 +491,13 @@ AskedOfClipsToo { question: String, component: String }: "several-blocks",
     "give the block a question of its own";
 SampledPairs { component: String }: "pairs", "\"{component}\" deals its pairs itself, evenly",
     "remove \"numSamples\", and write \"schedule\": {{\"rule\": \"incomplete\", \"perParticipant\": …}}";
+SureOfNoTruth { question: String }: "confidence", "\"{question}\" has no right answer, and how sure it is tells nothing of any",
+    "add \"truth\", the factor of the clip that holds the right answer, or remove \"confidence\"";
+NoConfidence { question: String }: "confidence", "\"{question}\" does not say how sure an answer is in every trial",
+    "name a question of type \"likert\", or \"slider\" without \"whilePlaying\", without \"showIf\" and \"attentionCheck\"";
+SureElsewhere { rating: String, question: String, component: String }: "confidence",
+    "\"{component}\" asks \"{question}\" without \"{rating}\"",
+    "add \"{rating}\" to the component's \"questions\", behind \"{question}\"";
 NoKey { key: String }: "keys", "\"{key}\" is no key that every keyboard has", "write a letter, a digit, or \"Space\"";
 KeyTwice { key: String }: "keys", "\"{key}\" stands for two options", "give each a key of its own";
 SeveralWithoutKey: "keys", "several options have no key", "give all of them a key, or all but the one that stands for no press";

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
+use super::reverse_correlation::shared;
 use super::values::{Names, Nearest};
 use super::{Subject, attention, conditions};
 use crate::columns::is_reserved_column;
-use crate::question::{KindOfQuestion as _, Question, defining};
+use crate::question::{KindOfQuestion as _, Question, QuestionKind, defining};
 use crate::study_file::{Component, TrialsComponent};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
@@ -69,6 +70,7 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
             );
         }
         truth(subject, question, &blocks, &below("/questions", index), issues);
+        confidence(subject, question, &below("/questions", index), issues);
     }
 }
 
@@ -106,6 +108,33 @@ fn signs(question: &Question, place: &str, issues: &mut Issues) {
             let known = Nearest::to(&sign.value, &sides);
             let problem = Problem::NoSide { value: sign.value.clone(), known };
             issues.error(below(&pointer, "value"), problem);
+        }
+    }
+}
+
+/// How sure a choice is, an ordered rating says that is asked in every trial that asks for the choice.
+fn confidence(subject: &Subject<'_>, question: &Question, place: &str, issues: &mut Issues) {
+    let Some(id) = question.kind.confidence() else { return };
+    let pointer = below(place, "confidence");
+    if question.kind.truth().is_none() {
+        issues.error(&pointer, Problem::SureOfNoTruth { question: question.id.clone() });
+    }
+    let Some(rating) = shared(subject, id, &pointer, issues) else { return };
+    let is_ordered = match &rating.kind {
+        QuestionKind::Likert(_) => true,
+        QuestionKind::Slider(line) => !line.while_playing,
+        _ => false,
+    };
+    if !is_ordered || rating.show_if.is_some() || rating.attention_check.is_some() {
+        issues.error(pointer, Problem::NoConfidence { question: rating.id.clone() });
+        return;
+    }
+    let asks = |block: &TrialsComponent, id: &str| block.questions.iter().any(|each| each == id);
+    for (component, block) in subject.study.trial_blocks() {
+        if asks(&block, &question.id) && !asks(&block, id) {
+            let (rating, component) = (rating.id.clone(), component.to_owned());
+            let question = question.id.clone();
+            issues.error(&pointer, Problem::SureElsewhere { rating, question, component });
         }
     }
 }

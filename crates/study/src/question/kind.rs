@@ -134,6 +134,11 @@ pub trait KindOfQuestion {
         None
     }
 
+    /// The rating that says how sure the answer is.
+    fn confidence(&self) -> Option<&str> {
+        None
+    }
+
     /// Whether it compares the two clips of a trial.
     fn compares_clips(&self) -> bool {
         false

@@ -27,6 +27,10 @@ pub struct SingleChoice {
     /// `truth` and `correct`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<String>,
+    /// With `truth`: another of the study's `questions`, a rating (`likert` or `slider`) that says how sure the answer is
+    /// and is asked in the same trials, higher is surer. The report then has the ROC curve of each option.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<String>,
     /// The key of each option, by its value: a letter, a digit, or `Space`. The first press from the clip's first frame
     /// on is the answer, and no other is taken. One option may be without: it is the answer where the clip has ended
     /// and nothing was pressed.
@@ -98,13 +102,22 @@ impl KindOfQuestion for SingleChoice {
             ),
         };
         match &self.truth {
-            Some(truth) => pick(
-                language,
-                format!("forced choice of {options}; right is the clip’s `{truth}`"),
-                format!(
-                    "choix forcé parmi {options} ; la bonne réponse est `{truth}` de l’extrait"
-                ),
-            ),
+            Some(truth) => {
+                let sure = self.confidence.as_ref().map_or_else(String::new, |rating| {
+                    pick(
+                        language,
+                        format!("; how sure the answer is, `{rating}`, gives an ROC curve of each option against all others, and the area below it"),
+                        format!(" ; la certitude de la réponse, `{rating}`, donne une courbe ROC de chaque option contre toutes les autres, et l’aire sous elle"),
+                    )
+                });
+                pick(
+                    language,
+                    format!("forced choice of {options}; right is the clip’s `{truth}`{sure}"),
+                    format!(
+                        "choix forcé parmi {options} ; la bonne réponse est `{truth}` de l’extrait{sure}"
+                    ),
+                )
+            }
             None => {
                 pick(language, format!("one of {options}"), format!("un choix parmi {options}"))
             }
@@ -129,6 +142,10 @@ impl KindOfQuestion for SingleChoice {
 
     fn truth(&self) -> Option<&str> {
         self.truth.as_deref()
+    }
+
+    fn confidence(&self) -> Option<&str> {
+        self.confidence.as_deref()
     }
 
     fn levels(&self) -> &[Choice] {

@@ -1,6 +1,7 @@
 //! Results in plain words. Only tests on one value a person are read; a trial-level p is never taken
 //! for more than a number.
 
+mod detection;
 mod equivalence;
 mod other_clips;
 mod pairs;
@@ -15,6 +16,7 @@ use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::trials::measure::MeasureKind;
+pub(crate) use detection::d_prime_by;
 pub(crate) use equivalence::{equivalence, verdict};
 pub(crate) use other_clips::other_clips;
 use pairs::{each_pair, many_pairs};

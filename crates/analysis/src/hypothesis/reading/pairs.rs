@@ -76,7 +76,7 @@ pub(super) fn many_pairs(
 }
 
 /// The higher level first, and by how much.
-fn oriented(pair: &Pair) -> (&str, &str, Option<f64>) {
+pub(super) fn oriented(pair: &Pair) -> (&str, &str, Option<f64>) {
     let estimate = pair.difference.map(|difference| difference.estimate);
     let effect = match &pair.wilcoxon {
         Outcome::Ok(line) => line.row.effect.unwrap_or(0.0),

@@ -3,10 +3,12 @@
 use mimique_stats::{Detection, TestResult as _};
 use mimique_study::TRACE_HZ;
 
-use super::checks::{Check, Collector};
+use super::check::Check;
+use super::checks::Collector;
 use crate::hypothesis::call::{Call, Design};
 use crate::report::results::Results;
 use crate::report::section::detection::CategoryDetection;
+use crate::report::section::roc::of_people;
 
 /// Instants of a course from one check to the next: half a second.
 const INSTANTS: usize = (TRACE_HZ / 2.0) as usize;
@@ -39,6 +41,34 @@ impl Collector {
         }
     }
 
+    /// Areas below ROC curves, and the points of all answers together.
+    pub(super) fn roc(&mut self, results: &Results<'_>) {
+        for own in &results.roc {
+            for category in &own.found.categories {
+                let call = |test| {
+                    let call = Call::new(Design::Confidence, test).text(&own.response);
+                    call.text(&own.confidence).text(&category.category)
+                };
+                let key = format!("roc:{}:{}", own.response, category.category);
+                if let Some(areas) = of_people(category) {
+                    let mut values = vec![("mean", areas.mean), ("n", areas.n as f64)];
+                    if let Some([low, high]) = areas.mean_ci_t {
+                        values.extend([("low", low), ("high", high)]);
+                    }
+                    self.checks.push(Check::new(key.clone(), call("roc"), values));
+                }
+                let Some(curve) = category.pooled.clone().ok() else { continue };
+                let [false_alarms, hits] = [0, 1].map(|place| -> Vec<f64> {
+                    curve.points.iter().map(|point| point[place]).collect()
+                });
+                let values = vec![("area", curve.area)];
+                let check = Check::new(format!("{key}:all"), call("roc_of_all"), values);
+                let check = check.list("false_alarms", &false_alarms).list("hits", &hits);
+                self.checks.push(check);
+            }
+        }
+    }
+
     /// d' of one category among the answers at some levels of a factor; of all where the factor has no name.
     fn category(
         &mut self,
@@ -57,16 +87,13 @@ impl Collector {
         }
         let call = Call::new(Design::Detection, Detection::NAMES.function);
         let call = call.text(response).text(&found.category).text(factor).list(levels);
-        self.checks.push(Check {
-            key,
-            call,
-            values: vec![
-                ("statistic", t.statistic),
-                ("p", t.p),
-                ("effect", people.d_prime_mean),
-                ("n", people.people as f64),
-            ],
-        });
+        let values = vec![
+            ("statistic", t.statistic),
+            ("p", t.p),
+            ("effect", people.d_prime_mean),
+            ("n", people.people as f64),
+        ];
+        self.checks.push(Check::new(key, call, values));
     }
 
     /// Means of ratings that follow the clip, every half a second and at the end.
@@ -83,19 +110,17 @@ impl Collector {
                     }
                     let call = Call::new(Design::Course, "mean_and_interval");
                     let call = call.text(&own.response).text(&own.factor).text(&level.level);
-                    self.checks.push(Check {
-                        key: format!(
-                            "trace:{}:{}:{}:{}",
-                            own.response,
-                            own.factor,
-                            level.level,
-                            instant + 1
-                        ),
-                        call: call.number(instant + 1),
-                        values,
-                    });
+                    let key = format!(
+                        "trace:{}:{}:{}:{}",
+                        own.response,
+                        own.factor,
+                        level.level,
+                        instant + 1
+                    );
+                    self.checks.push(Check::new(key, call.number(instant + 1), values));
                 }
             }
+            self.trace_pairs(own);
         }
     }
 }

@@ -4,6 +4,7 @@ use mimique_stats::{
     IntraclassCorrelation, MeasurementLevel, MixedModel, Outcome, TestResult as _,
 };
 
+use super::check::{Check, Family, Nearness};
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::{Pair, PersonLevel};
@@ -12,32 +13,18 @@ use crate::hypothesis::trial_level::TrialLevel;
 use crate::hypothesis::undefined::TestOutcome;
 use crate::report::results::Results;
 
-/// One computation: a key, how it is called, and what came out.
-pub(super) struct Check {
-    pub key: String,
-    pub call: Call,
-    pub values: Vec<(&'static str, f64)>,
-}
-
-/// p-values that are corrected together: keys of their checks, and keys for the corrected ones.
-pub(super) struct Family {
-    pub of: Vec<String>,
-    pub into: Vec<String>,
-    pub p_holm: Vec<f64>,
-}
-
 /// Walks the results.
 #[derive(Default)]
 pub(super) struct Collector {
     pub(super) checks: Vec<Check>,
-    families: Vec<Family>,
+    pub(super) families: Vec<Family>,
 }
 
 impl Collector {
     /// The checks and families of a report, in its order.
     pub(super) fn of(results: &Results<'_>) -> (Vec<Check>, Vec<Family>) {
         let mut all = Self::default();
-        let mut decided = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let mut decided = Family::empty(Nearness::Rounding);
         for result in &results.hypotheses {
             let key = format!("hypothesis:{}", result.id);
             all.trial_level(&key, &result.as_in_the_thesis);
@@ -48,7 +35,7 @@ impl Collector {
                 if let (true, Some(p)) = (found.decides, found.p()) {
                     let key = format!("{key}:other clips");
                     let call = Call::new(Design::Given, MixedModel::NAMES.function).given(p);
-                    all.checks.push(Check { key: key.clone(), call, values: vec![("p", p)] });
+                    all.checks.push(Check::new(key.clone(), call, vec![("p", p)]));
                     deciding = Some(key);
                 }
             }
@@ -75,11 +62,8 @@ impl Collector {
             values.extend(result.kappa.map(|kappa| ("kappa", kappa)));
             let call = Call::new(Design::Answers, "confusion").text(&matrix.response).text(by);
             let levels = matrix.by.as_ref().map(|_| matrix.of.clone());
-            all.checks.push(Check {
-                key: format!("confusion:{}:{}", matrix.response, matrix.of),
-                call: call.list(levels.as_slice()),
-                values,
-            });
+            let key = format!("confusion:{}:{}", matrix.response, matrix.of);
+            all.checks.push(Check::new(key, call.list(levels.as_slice()), values));
         }
         for comparison in &results.comparisons {
             all.comparison(comparison);
@@ -110,7 +94,11 @@ impl Collector {
             all.line(format!("course:{}", course.measure), &course.trend);
         }
         all.detection(results);
+        all.roc(results);
         all.traces(results);
+        all.thresholds(results);
+        all.scalings(results);
+        all.faces(results);
         all.agreement(results);
         all.layouts(results);
         (all.checks, all.families)
@@ -123,38 +111,31 @@ impl Collector {
             if let Some(Outcome::Ok(icc)) = &own.icc {
                 let form = icc.agreement_of_one();
                 let name = IntraclassCorrelation::NAMES.function;
-                self.checks.push(Check {
-                    key: format!("{key}:icc"),
-                    call: Call::new(Design::ClipsByPeople, name).text(&own.response),
-                    values: vec![
-                        ("statistic", form.F),
-                        ("p", form.p),
-                        ("effect", form.icc),
-                        ("n", icc.clips_used as f64),
-                    ],
-                });
+                let call = Call::new(Design::ClipsByPeople, name).text(&own.response);
+                let values = vec![
+                    ("statistic", form.F),
+                    ("p", form.p),
+                    ("effect", form.icc),
+                    ("n", icc.clips_used as f64),
+                ];
+                self.checks.push(Check::new(format!("{key}:icc"), call, values));
             }
             if let Outcome::Ok(alpha) = &own.krippendorff {
                 // Names are in a column of their own.
                 let words = own.level == MeasurementLevel::Nominal;
                 let column = format!("{}{}", own.response, if words { ".answer" } else { "" });
                 let call = Call::new(Design::FirstAnswers, "krippendorff").text(&column);
-                self.checks.push(Check {
-                    key: format!("{key}:alpha"),
-                    call: call.text(own.level.name()),
-                    values: vec![("alpha", alpha.alpha)],
-                });
+                let (key, call) = (format!("{key}:alpha"), call.text(own.level.name()));
+                self.checks.push(Check::new(key, call, vec![("alpha", alpha.alpha)]));
             }
         }
         for scale in &results.scales {
             let Outcome::Ok(found) = &scale.cronbach else { continue };
             let [low, high] = found.interval_95_feldt;
             let call = Call::new(Design::Items, "cronbach").list(&scale.items);
-            self.checks.push(Check {
-                key: format!("scale:{}", scale.scale),
-                call: call.list(&scale.reversed),
-                values: vec![("alpha", found.alpha), ("low", low), ("high", high)],
-            });
+            let values = vec![("alpha", found.alpha), ("low", low), ("high", high)];
+            let (key, call) = (format!("scale:{}", scale.scale), call.list(&scale.reversed));
+            self.checks.push(Check::new(key, call, values));
         }
     }
 
@@ -171,27 +152,22 @@ impl Collector {
                 ("q3", d.q3),
             ];
             values.extend(d.sd.map(|sd| ("sd", sd)));
-            self.checks.push(Check {
-                key: format!("{key}:{level}"),
-                call: Call::new(Design::Level, "describe").text(measure).text(factor).text(level),
-                values,
-            });
+            let call = Call::new(Design::Level, "describe").text(measure).text(factor).text(level);
+            self.checks.push(Check::new(format!("{key}:{level}"), call, values));
         }
         for (place, (level, mean)) in comparison.person_means.iter().enumerate() {
             let Some(mean) = mean else { continue };
             let call = Call::new(Design::PersonMean, "mean").text(measure).text(factor);
-            self.checks.push(Check {
-                key: format!("{key}:{level}:people"),
-                call: call.list(&comparison.levels).number(place + 1),
-                values: vec![("mean", *mean)],
-            });
+            let call = call.list(&comparison.levels).number(place + 1);
+            let key = format!("{key}:{level}:people");
+            self.checks.push(Check::new(key, call, vec![("mean", *mean)]));
         }
         self.trial_level(&key, &comparison.as_in_the_thesis);
         self.person_level(&key, &comparison.recommended);
     }
 
     fn layouts(&mut self, results: &Results<'_>) {
-        let mut family = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let mut family = Family::empty(Nearness::Rounding);
         let mut row = None;
         for cell in &results.layouts {
             let key = format!("table:{}:{}:{}", cell.table, cell.row, cell.column);
@@ -217,9 +193,8 @@ impl Collector {
         self.close(&mut family);
     }
 
-    fn close(&mut self, family: &mut Family) {
-        let empty = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
-        let whole = std::mem::replace(family, empty);
+    pub(super) fn close(&mut self, family: &mut Family) {
+        let whole = std::mem::replace(family, Family::empty(family.nearness));
         self.families.extend((!whole.of.is_empty()).then_some(whole));
     }
 
@@ -233,7 +208,7 @@ impl Collector {
         for (place, outcome) in people.overall.iter().enumerate() {
             self.line(overall_key(key, place), outcome);
         }
-        let mut family = Family { of: Vec::new(), into: Vec::new(), p_holm: Vec::new() };
+        let mut family = Family::empty(Nearness::Rounding);
         for pair in &people.pairs {
             let key = pair_key(key, pair);
             self.line(key.clone(), &pair.wilcoxon);
@@ -267,7 +242,7 @@ impl Collector {
         if line.call.design == Design::DifferencesByTrait {
             values.extend(line.p_holm.map(|p| ("p_holm", p)));
         }
-        self.checks.push(Check { key, call: line.call.clone(), values });
+        self.checks.push(Check::new(key, line.call.clone(), values));
     }
 }
 

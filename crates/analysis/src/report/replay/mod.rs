@@ -1,9 +1,12 @@
 //! The report's numbers for other programs: the trials as a table, every number under a key, and
 //! scripts in R and Python that compute them again and compare.
 
+mod blocks;
 mod by_person;
+mod check;
 mod checks;
 mod models;
+mod shown;
 mod trials;
 
 use std::fmt::Write;
@@ -14,7 +17,8 @@ use crate::hypothesis::call::Argument;
 use crate::report::ReportFile;
 use crate::report::document::csv_text;
 use crate::report::section::Writer;
-use checks::{Check, Collector, Family};
+use check::{Check, Family, Nearness};
+use checks::Collector;
 use models::models;
 use trials::trials;
 
@@ -28,10 +32,12 @@ pub(crate) fn files(writer: &Writer<'_>) -> Vec<ReportFile> {
     };
     let r = include_str!("../scripts/analysis.R")
         .replacen("@TESTS@", &tests(|procedure| procedure.r, "\n\n"), 1)
+        .replacen("@BLOCKS@", include_str!("../scripts/blocks.R").trim(), 1)
         .replacen("@CALLS@\n", &calls(&checks, &families, Script::R), 1)
         .replacen("@MODELS@\n", &models(writer), 1);
     let python = include_str!("../scripts/analysis.py")
         .replacen("@TESTS@", &tests(|procedure| procedure.python, "\n\n\n"), 1)
+        .replacen("@BLOCKS@", include_str!("../scripts/blocks.py").trim(), 1)
         .replacen("@CALLS@\n", &calls(&checks, &families, Script::Python), 1);
     vec![
         file("analysis.R", r),
@@ -92,16 +98,19 @@ fn quoted(text: &str) -> String {
     quoted
 }
 
+/// Key, name, value, and the difference that other programs may have beside that of rounding.
 fn numbers(checks: &[Check], families: &[Family]) -> String {
-    let line =
-        |key: &str, name: &str, value: f64| [key.to_owned(), name.to_owned(), format!("{value:?}")];
+    let line = |key: &str, name: &str, value: f64, nearness: Nearness| {
+        let tolerance = nearness.tolerance(value).to_string();
+        [key.to_owned(), name.to_owned(), format!("{value:?}"), tolerance]
+    };
     let of_checks = checks.iter().flat_map(|check| {
-        check.values.iter().map(move |(name, value)| line(&check.key, name, *value))
+        check.named().map(move |(name, value)| line(&check.key, &name, value, check.nearness))
     });
     let of_families = families.iter().flat_map(|family| {
         let corrected = family.into.iter().zip(&family.p_holm);
-        corrected.map(move |(key, p_holm)| line(key, "p_holm", *p_holm))
+        corrected.map(move |(key, p_holm)| line(key, "p_holm", *p_holm, family.nearness))
     });
-    let heading = ["key", "name", "value"].map(str::to_owned);
+    let heading = ["key", "name", "value", "tolerance"].map(str::to_owned);
     csv_text(std::iter::once(heading).chain(of_checks).chain(of_families))
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use mimique_study::KindOfQuestion as _;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+use super::shown::{of_blocks, spaced};
 use crate::language::Language;
 use crate::report::document::csv_text;
 use crate::report::section::Writer;
@@ -13,8 +14,9 @@ use crate::trials::export::{Export, Trial};
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// A column of the trials' file.
-enum Cells<'e> {
+pub(super) enum Cells<'e> {
     Texts(Vec<&'e str>),
+    Written(Vec<Option<String>>),
     Numbers(Vec<Option<f64>>),
     /// Numbers with blanks between them.
     Courses(Vec<Option<Arc<[f32]>>>),
@@ -25,6 +27,9 @@ impl Cells<'_> {
     fn bytes(&self, row: usize) -> Cow<'_, [u8]> {
         match self {
             Self::Texts(cells) => Cow::Borrowed(cells[row].as_bytes()),
+            Self::Written(cells) => {
+                Cow::Borrowed(cells[row].as_deref().unwrap_or_default().as_bytes())
+            }
             Self::Numbers(cells) => match cells[row] {
                 Some(number) => Cow::Owned(number.to_string().into_bytes()),
                 None => Cow::Borrowed(&[]),
@@ -32,9 +37,7 @@ impl Cells<'_> {
             Self::Courses(cells) => {
                 // Every number as the report has computed with it.
                 let numbers = cells[row].iter().flat_map(|course| course.iter());
-                let numbers: Vec<String> =
-                    numbers.map(|number| f64::from(*number).to_string()).collect();
-                Cow::Owned(numbers.join(" ").into_bytes())
+                Cow::Owned(spaced(numbers.map(|number| f64::from(*number))).into_bytes())
             }
         }
     }
@@ -67,6 +70,7 @@ pub(super) fn trials(writer: &Writer<'_>) -> String {
         columns.insert(2, ("segment".to_owned(), cells));
     }
     columns.extend(of_companions(export));
+    columns.extend(of_blocks(export, writer.study));
     for (name, cells) in &export.about {
         let texts = person.iter().map(|&person| cells[person].as_deref().unwrap_or_default());
         columns.push((name.clone(), Cells::Texts(texts.collect())));

@@ -69,6 +69,7 @@ impl Writer<'_> {
         let table = self.detection_table(&result, truth);
         self.blocks.push(Block::Table(table));
         self.detection_figure(asked, truth, &found);
+        self.roc(asked, truth);
         result.by = self.detection_by_factors(asked, truth, factors);
         self.results.detection.push(result);
     }

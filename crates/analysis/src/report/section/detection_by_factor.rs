@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::hypothesis::call::Call;
 use crate::hypothesis::person_level::{self, PersonLevel, WithinDesigns};
+use crate::hypothesis::reading;
 use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure::{DetectionPanel, detection_planes};
 use crate::report::section::Writer;
@@ -88,6 +89,15 @@ impl Writer<'_> {
             } else {
                 Block::Table(table)
             });
+            let compared = result.categories.iter().filter_map(|own| {
+                let tests = &own.compared.as_ref()?.d_prime;
+                Some((self.naming.level(truth, &own.category), tests))
+            });
+            let compared: Vec<(String, &PersonLevel)> = compared.collect();
+            if !compared.is_empty() {
+                let words = reading::d_prime_by(&self.naming, factor, &compared);
+                self.blocks.push(Block::Reading(words));
+            }
             results.push(result);
         }
         results

@@ -17,6 +17,7 @@ pub(crate) mod other_clips;
 pub(crate) mod panels;
 pub(crate) mod people;
 pub(crate) mod recognition;
+pub(crate) mod roc;
 pub(crate) mod stimulus_measures;
 pub(crate) mod timing;
 pub(crate) mod trace_tests;

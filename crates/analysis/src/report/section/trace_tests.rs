@@ -14,9 +14,11 @@ use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
 use crate::trials::measure::Measure;
 
-/// Draws of each test, and their seed: the same answers give the same p.
+/// Draws of each test.
+pub(crate) const PERMUTATIONS: usize = 5000;
+/// With their seed: the same answers give the same p.
 const OPTIONS: ClusterPermutationOptions =
-    ClusterPermutationOptions { permutations: 5000, seed: 1 };
+    ClusterPermutationOptions { permutations: PERMUTATIONS, seed: 1 };
 
 /// A mean course of each person, by the person's place in the export.
 pub(crate) type PersonCourses = BTreeMap<usize, Vec<f64>>;

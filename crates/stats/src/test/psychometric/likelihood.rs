@@ -38,6 +38,10 @@ const STEPS: usize = 400;
 /// Where the step's length in standard errors, squared, is below this, the place is a maximum.
 const SETTLED: f64 = 1e-22;
 
+/// Damping takes the information of a coordinate to be this at least: where answers say nothing of threshold and spread
+/// any more, the lapse still goes on to its maximum.
+const NO_INFORMATION: f64 = 1e-9;
+
 /// Height, score and Fisher information at a place.
 struct Terrain {
     height: f64,
@@ -266,7 +270,7 @@ fn ends(counts: &[LevelCount], shape: Shape) -> [f64; 2] {
     [low, levels().next_back().unwrap_or(low)]
 }
 
-/// (I + damping diag I)^-1 score over the free coordinates; none where that is singular.
+/// (I + damping max(diag I, [`NO_INFORMATION`]))^-1 score over the free coordinates; none where that is singular.
 fn step(terrain: &Terrain, free: [bool; 3], damping: f64) -> Option<[f64; 3]> {
     let places: Vec<usize> = (0..3).filter(|i| free[*i]).collect();
     let size = places.len();
@@ -277,7 +281,7 @@ fn step(terrain: &Terrain, free: [bool; 3], damping: f64) -> Option<[f64; 3]> {
         for (j, &b) in places.iter().enumerate() {
             matrix[(i, j)] = terrain.information[a][b];
         }
-        matrix[(i, i)] *= 1.0 + damping;
+        matrix[(i, i)] += damping * matrix[(i, i)].max(NO_INFORMATION);
     }
     let solved = nalgebra::Cholesky::new(matrix)?.solve(&right);
     let mut step = [0.0; 3];

@@ -218,3 +218,30 @@ fn fit_at(likelihood: &Likelihood<'_>, summit: &Summit) -> PsychometricFit {
         profile_95: interval::profile(likelihood, summit),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Answers that step between two levels, where threshold and spread have no information: SciPy 1.17.1 (L-BFGS-B,
+    /// gradient 1e-11) finds the lapse 1/16 and this height.
+    #[test]
+    fn the_lapse_of_a_step_is_at_its_maximum() {
+        let counts = [(3, 2), (4, 1), (5, 5), (6, 5), (7, 6), (4, 4), (1, 1)];
+        let counts = counts.into_iter().enumerate();
+        let counts: Vec<LevelCount> = counts
+            .map(|(place, (n, correct))| LevelCount {
+                level: -8.5 + place as f64 / 2.0,
+                n,
+                correct,
+            })
+            .collect();
+        let options =
+            PsychometricOptions { shape: Shape::Logistic, guess: 0.5, lapse: Lapse::Free };
+        let likelihood = Likelihood::new(&counts, options.shape, options.guess, options.lapse);
+        let summit = likelihood.highest();
+        let scipy = -11.752_516_651_8 + 9.0 * f64::ln_1p(-0.0625);
+        assert!((summit.height - scipy).abs() < 1e-6, "{}, SciPy has {scipy}", summit.height);
+        assert!((summit.at[2] - 0.0625).abs() < 1e-4, "{:?}", summit.at);
+    }
+}

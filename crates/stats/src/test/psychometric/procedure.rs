@@ -51,40 +51,111 @@ pub(crate) const PROCEDURE: Procedure = Procedure {
     run,
     sample: Sample::Coefficient,
     r: r#"
-# A cumulative normal psychometric function by maximum likelihood; lapse is fixed.
-psychometric <- function(level, n, correct, guess = 0.5, lapse = 0.02) {
-  minus_likelihood <- function(theta) {
-    p <- guess + (1 - guess - lapse) * pnorm((level - theta[1]) / exp(theta[2]))
-    -sum(ifelse(correct > 0, correct * log(p), 0) + ifelse(n > correct, (n - correct) * log(1 - p), 0))
+# A psychometric function by maximum likelihood; lapse is fixed, or NULL: free from 0 to 0.2 with the prior Beta(1, 10).
+psychometric <- function(level, n, correct, guess = 0.5, lapse = 0.02, shape = "normal") {
+  free <- is.null(lapse)
+  weibull <- shape == "weibull"
+  # theta: the level where F = 1/2, or its logarithm; the logarithm of spread or slope; the lapse. F with its slopes.
+  seen <- function(theta) {
+    spread <- exp(theta[2])
+    if (weibull) {
+      ratio <- ifelse(level > 0, spread * (log(pmax(level, 0)) - theta[1]), -1e3)
+      u <- log(2) * exp(ratio)
+      return(cbind(-expm1(-u), -spread * u * exp(-u), u * exp(-u) * ratio))
+    }
+    z <- (level - theta[1]) / spread
+    density <- if (shape == "normal") dnorm(z) else dlogis(z)
+    cbind(if (shape == "normal") pnorm(z) else plogis(z), -density / spread, -density * z)
   }
-  starts <- expand.grid(quantile(level, 1:9 / 10), log(diff(range(level)) / c(2, 5, 12, 30)))
-  heights <- apply(starts, 1, minus_likelihood)
-  found <- list(par = unlist(starts[which.min(heights), ]))
-  for (round in 1:5) found <- optim(found$par, minus_likelihood, method = "BFGS", control = list(reltol = 1e-15))
-  c(location = found$par[[1]], scale = exp(found$par[[2]]), loglik = -found$value)
+  share <- function(theta) guess + (1 - guess - theta[3]) * seen(theta)[, 1]
+  prior <- function(own) if (free) 9 * log1p(-own) else 0
+  height <- function(theta) {
+    p <- share(theta)
+    sum(ifelse(correct > 0, correct * log(p), 0) + ifelse(n > correct, (n - correct) * log(pmax(1 - p, 1e-300)), 0)) + prior(theta[3])
+  }
+  slope <- function(theta) {
+    p <- share(theta)
+    f <- seen(theta)
+    surprise <- ifelse(p * (1 - p) > 0, (correct - n * p) / (p * (1 - p)), 0)
+    c((1 - guess - theta[3]) * colSums(surprise * f[, 2:3]), -sum(surprise * f[, 1]) - if (free) 9 / (1 - theta[3]) else 0)
+  }
+  ends <- range(level[level > 0 | !weibull])
+  if (weibull) ends <- log(ends)
+  width <- diff(ends)
+  spreads <- if (weibull) 0.5 * 2^(0:7) else width / 80 * 2.2^(0:7)
+  reach <- if (weibull) c(0.01, 1000) else width * c(0.001, 1000)
+  climb <- function(own) {
+    starts <- as.matrix(expand.grid(seq(ends[1] - width / 4, ends[2] + width / 4, length.out = 17), log(spreads), own))
+    theta <- starts[which.max(apply(starts, 1, height)), ]
+    for (round in 1:3) {
+      found <- optim(theta, height, slope, method = "L-BFGS-B", lower = c(ends[1] - 20 * width, log(reach[1]), if (free) 0 else own),
+                     upper = c(ends[2] + 20 * width, log(reach[2]), if (free) 0.2 else own),
+                     control = list(fnscale = -1, factr = 1, maxit = 1000))
+      theta <- found$par
+    }
+    found
+  }
+  found <- lapply(if (free) c(0.01, 0.07, 0.15) else lapse, climb)
+  best <- found[[which.max(vapply(found, `[[`, 0, "value"))]]
+  half <- if (weibull) exp(best$par[[1]]) else best$par[[1]]
+  spread <- exp(best$par[[2]])
+  location <- if (weibull) half * log(2)^(-1 / spread) else half
+  c(threshold = half, location = location, scale = spread, lapse = best$par[[3]], loglik = best$value - prior(best$par[[3]]))
 }
 "#,
     python: r#"
-def psychometric(level, n, correct, guess=0.5, lapse=0.02):
-    """A cumulative normal psychometric function by maximum likelihood; lapse is fixed."""
+def psychometric(level, n, correct, guess=0.5, lapse=0.02, shape="normal"):
+    """A psychometric function by maximum likelihood; lapse is fixed, or None: free from 0 to 0.2 with the prior
+    Beta(1, 10)."""
     from scipy.optimize import minimize
-    from scipy.special import xlog1py, xlogy
+    from scipy.special import expit, ndtr, xlog1py, xlogy
 
-    def minus_likelihood(theta):
-        p = guess + (1 - guess - lapse) * stats.norm.cdf((level - theta[0]) / math.exp(theta[1]))
-        return -(xlogy(correct, p) + xlog1py(n - correct, -p)).sum()
+    weibull, free = shape == "weibull", lapse is None
 
-    width = np.ptp(level)
-    starts = [
-        (m, math.log(width / share))
-        for m in np.quantile(level, np.arange(1, 10) / 10)
-        for share in (2, 5, 12, 30)
-    ]
-    theta = min(starts, key=minus_likelihood)
-    for _ in range(5):
-        found = minimize(minus_likelihood, theta, method="BFGS", options=dict(gtol=1e-9))
-        theta = found.x
-    return dict(location=theta[0], scale=math.exp(theta[1]), loglik=-found.fun)
+    def prior(lapse):
+        return 9 * np.log1p(-lapse) if free else 0.0
+
+    def seen(theta):
+        """F with its slopes. theta: the level where F = 1/2, or its logarithm; the logarithm of spread or slope; the
+        lapse."""
+        spread = np.exp(theta[1])
+        if weibull:
+            with np.errstate(divide="ignore"):
+                ratio = np.maximum(spread * (np.log(level) - theta[0]), -1e3)
+            u = math.log(2) * np.exp(ratio)
+            return -np.expm1(-u), -spread * u * np.exp(-u), u * np.exp(-u) * ratio
+        z = (level - theta[0]) / spread
+        density = np.exp(-z * z / 2) / math.sqrt(2 * math.pi) if shape == "normal" else expit(z) * expit(-z)
+        return ndtr(z) if shape == "normal" else expit(z), -density / spread, -density * z
+
+    def minus_height(theta):
+        f, by_half, by_spread = seen(theta)
+        room = 1 - guess - theta[2]
+        p = guess + room * f
+        spread = p * (1 - p)
+        surprise = np.where(spread > 0, (correct - n * p) / np.where(spread > 0, spread, 1), 0)
+        slope = [room * surprise @ by_half, room * surprise @ by_spread, -surprise @ f - (9 / (1 - theta[2]) if free else 0)]
+        return -(xlogy(correct, p) + xlog1py(n - correct, -p)).sum() - prior(theta[2]), -np.array(slope)
+
+    used = level[level > 0] if weibull else level
+    low, high = (math.log(end) if weibull else end for end in (used.min(), used.max()))
+    width = high - low
+    spreads = 0.5 * 2.0 ** np.arange(8) if weibull else width / 80 * 2.2 ** np.arange(8)
+    least, most = (0.01, 1000) if weibull else (width / 1000, 1000 * width)
+    places = np.linspace(low - width / 4, high + width / 4, 17)
+    best = None
+    for own in (0.01, 0.07, 0.15) if free else (lapse,):
+        bounds = [(low - 20 * width, high + 20 * width), (math.log(least), math.log(most)), (0, 0.2) if free else (own, own)]
+        starts = [(m, math.log(s), own) for m in places for s in spreads]
+        theta = min(starts, key=lambda start: minus_height(start)[0])
+        for _ in range(3):
+            found = minimize(minus_height, theta, jac=True, method="L-BFGS-B", bounds=bounds, options=dict(ftol=1e-16, gtol=1e-11))
+            theta = found.x
+        if best is None or found.fun < best.fun:
+            best = found
+    half, spread, own = math.exp(best.x[0]) if weibull else best.x[0], math.exp(best.x[1]), best.x[2]
+    location = half * math.log(2) ** (-1 / spread) if weibull else half
+    return dict(threshold=half, location=location, scale=spread, lapse=own, loglik=-best.fun - prior(own))
 "#,
     golden_cases: "",
 };

@@ -45,8 +45,82 @@ pub(crate) const PROCEDURE: Procedure = Procedure {
     ]],
     run,
     sample: Sample::Other,
-    r: "",
-    python: "",
+    r: r#"
+# Each person who answered with a category in some trials and not in all: the answers, the cells less their means, and
+# what makes sums of them z; 0 where a cell does not vary.
+of_each_person <- function(who, cells, said) {
+  of_person <- function(own) {
+    answers <- as.numeric(said[own])
+    n <- length(answers)
+    k <- sum(answers)
+    if (k == 0 || k == n) return(NULL)
+    x <- cells[own, , drop = FALSE]
+    centred <- sweep(x, 2, colMeans(x))
+    squares <- colSums(centred^2)
+    varies <- squares > 1e-12 * colSums(x^2)
+    list(answers = answers, centred = centred, share = n / (k * (n - k)),
+         scale = ifelse(varies, sqrt(n * (n - 1) / (k * (n - k)) / squares), 0))
+  }
+  Filter(Negate(is.null), lapply(split(seq_along(said), who), of_person))
+}
+# How many people have a z of each cell, as a root.
+pooling <- function(people) sqrt(pmax(Reduce(`+`, lapply(people, function(own) own$scale > 0)), 1))
+# Classification images: `cells` has a row per trial; `said` tells the trials that were answered with the category.
+# Difference and z of each cell over people.
+classification_image <- function(who, cells, said) {
+  people <- of_each_person(who, cells, said)
+  over <- function(each) Reduce(`+`, lapply(people, function(own) drop(own$answers %*% own$centred) * own[[each]]))
+  list(difference = over("share") / length(people), z = over("scale") / pooling(people))
+}
+# The p of these z, corrected over all cells: each person's answers dealt anew over that person's trials, 1000 times.
+classification_p <- function(who, cells, said, draws = 1000) {
+  people <- of_each_person(who, cells, said)
+  dealt <- function(own) sweep(t(replicate(draws, sample(own$answers))) %*% own$centred, 2, own$scale, `*`)
+  total <- sweep(Reduce(`+`, lapply(people, dealt)), 2, pooling(people), `/`)
+  largest <- apply(abs(total), 1, max)
+  z <- abs(classification_image(who, cells, said)$z)
+  list(p = vapply(z, function(one) (1 + sum(largest >= one - 1e-9)) / (1 + draws), 0))
+}
+"#,
+    python: r#"
+def of_each_person(who, cells, said):
+    """Of each person who answered so in some trials and not in all: the answers, the cells less their means, and what
+    makes sums of them z; 0 where a cell does not vary."""
+    for one in np.unique(who):
+        own = who == one
+        answers, x = said[own], cells[own]
+        n, k = len(answers), answers.sum()
+        if 0 < k < n:
+            centred = x - x.mean(axis=0)
+            squares = (centred**2).sum(axis=0)
+            varies = squares > 1e-12 * (x**2).sum(axis=0)
+            scale = np.sqrt(n * (n - 1) / (k * (n - k)) / np.where(varies, squares, 1.0)) * varies
+            yield answers.astype(float), centred, scale
+
+
+def classification_image(who, cells, said):
+    """Classification images: `cells` has a row per trial; `said` tells the trials answered with the category. Difference
+    and z of each cell over people who answered so in some of their trials and not in all."""
+    people = list(of_each_person(who, cells, said))
+    sums = [answers @ centred for answers, centred, _ in people]
+    shares = [len(answers) / (answers.sum() * (len(answers) - answers.sum())) for answers, _, _ in people]
+    difference = sum(own * share for own, share in zip(sums, shares)) / len(people)
+    z = sum(own * scale for own, (_, _, scale) in zip(sums, people))
+    return dict(difference=difference, z=z / np.sqrt(np.maximum(sum(scale > 0 for _, _, scale in people), 1)))
+
+
+def classification_p(who, cells, said, draws=1000):
+    """The p of these z, corrected over all cells: each person's answers dealt anew over that person's trials, 1000
+    times."""
+    random = np.random.default_rng(1)
+    total, found = 0.0, 0
+    for answers, centred, scale in of_each_person(who, cells, said):
+        dealt = random.permuted(np.tile(answers, (draws, 1)), axis=1)
+        total, found = total + dealt @ centred * scale, found + (scale > 0)
+    largest = np.abs(total / np.sqrt(np.maximum(found, 1))).max(axis=1)
+    z = np.abs(classification_image(who, cells, said)["z"])
+    return dict(p=[(1 + (largest >= one - 1e-9).sum()) / (1 + draws) for one in z])
+"#,
     golden_cases: "",
 };
 

@@ -1,0 +1,72 @@
+//! ROC curves: the rate of hits over the rate of false alarms, a line per category, with the diagonal of chance.
+
+use mimique_stats::RocCurve;
+
+use crate::language::Language;
+use crate::report::document::{DataTable, Figure};
+use crate::report::figure::courses::LINES;
+use crate::report::figure::svg::{Anchor, Axis, Svg};
+
+const LEFT: f64 = 60.0;
+const TOP: f64 = 34.0;
+/// Both axes are as long as each other.
+const SIDE: f64 = 280.0;
+/// Between the curves and their names.
+const GAP: f64 = 24.0;
+const NAME_LINE: f64 = 18.0;
+
+/// A curve for each category, with its name and its area beside them.
+pub(crate) fn roc_curves(
+    language: Language,
+    id: &str,
+    caption: &str,
+    curves: &[(String, RocCurve)],
+) -> Figure {
+    let (right, bottom) = (LEFT + SIDE, TOP + SIDE);
+    let mut svg = Svg::new(caption, bottom + 44.0);
+    let (across, up) = (Axis::new(0.0, 1.0, LEFT, right), Axis::new(0.0, 1.0, bottom, TOP));
+    for &tick in &up.ticks {
+        let (x, y) = (across.place(tick), up.place(tick));
+        svg.line([LEFT, y], [right, y], "rule");
+        svg.line([x, TOP], [x, bottom], "rule");
+        let text = language.fixed(tick, up.decimals);
+        svg.text(LEFT - 8.0, y + 4.0, "small", Anchor::End, &text);
+        svg.text(x, bottom + 16.0, "small", Anchor::Middle, &text);
+    }
+    let titles = language.pick(
+        ["rate of false alarms", "rate of hits"],
+        ["taux de fausses alarmes", "taux de détections"],
+    );
+    svg.text((LEFT + right) / 2.0, bottom + 34.0, "small", Anchor::Middle, titles[0]);
+    svg.text(LEFT, TOP - 12.0, "small", Anchor::Start, titles[1]);
+    svg.line([LEFT, bottom], [right, TOP], "zero");
+    let columns = language.pick(
+        ["category", "false alarms", "hits", "area"],
+        ["catégorie", "fausses alarmes", "détections", "aire"],
+    );
+    let mut data = DataTable::new(id, caption, columns);
+    let mut spoken = Vec::new();
+    for (k, (name, curve)) in curves.iter().enumerate() {
+        // Colours that come again have other dashes.
+        let dashes = LINES[(k + k / LINES.len()) % LINES.len()].1;
+        let line = (LINES[k % LINES.len()].0, dashes);
+        let points: Vec<[f64; 2]> =
+            curve.points.iter().map(|[x, y]| [across.place(*x), up.place(*y)]).collect();
+        svg.coloured_path(&points, line);
+        let area = language.fixed(curve.area, 3);
+        let y = TOP + 10.0 + NAME_LINE * k as f64;
+        svg.coloured_path(&[[right + GAP, y], [right + GAP + 18.0, y]], line);
+        svg.text(right + GAP + 24.0, y + 4.0, "small", Anchor::Start, &format!("{name} {area}"));
+        spoken.push(format!("{name} {area}"));
+        for [x, y] in &curve.points {
+            let numbers = [x, y].map(|value| language.fixed(*value, 4));
+            data.row([name.clone()].into_iter().chain(numbers).chain([area.clone()]));
+        }
+    }
+    let spoken = spoken.join(", ");
+    let alt = language.pick(
+        format!("Rate of hits over rate of false alarms, a line per category, and the diagonal of answers that tell nothing. Area below each line: {spoken}."),
+        format!("Taux de détections selon le taux de fausses alarmes, une ligne par catégorie, et la diagonale des réponses qui ne distinguent rien. Aire sous chaque ligne : {spoken}."),
+    );
+    Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }
+}
