@@ -55,6 +55,16 @@ fn planted_faces_are_found_again() {
     let page = text(&written, "report.md");
     assert!(page.contains("more often answered where the face shows AU06, AU12."), "{page}");
     // The face in mind is a file of recorded weights that begins and ends at rest.
+    let played = text(&written, "figures/faces-joy-face.svg");
+    std::fs::write("/tmp/face.html", text(&written, "report.html")).unwrap();
+    std::fs::write("/tmp/face.svg", &played).unwrap();
+    assert!(played.contains("id=\"faces-joy-face-played\"") && played.contains("role=\"group\""));
+    // Of a smile the mouth moves; the brows, which no unit of it moves, stand still.
+    let moves = |class: &str| {
+        let paths = played.split("<path").filter(|path| path.contains(&format!("class=\"{class}\"")));
+        paths.filter(|path| path.contains("faces-joy-face-played.click")).count()
+    };
+    assert_eq!((moves("lips"), moves("brow")), (1, 0));
     let face = text(&written, "tables/figure-faces-joy-face.csv");
     let lines: Vec<&str> = face.lines().collect();
     assert_eq!(lines[0], "frame,time,AU06,AU12");
