@@ -54,7 +54,7 @@ pub(crate) fn d_prime_by(
         let unshown = unshown.join(", ");
         sentences.push(language.pick(
             format!("For {unshown} no difference of d′ by {shown} was shown; that is no proof that there is none."),
-            format!("Pour {unshown}, aucune différence de d′ selon {shown} n’a été montrée ; cela ne prouve pas qu’il n’y en a pas."),
+            format!("Pour {unshown}, aucune différence de d′ selon le facteur {shown} n’a été montrée ; cela ne prouve pas qu’il n’y en a pas."),
         ));
     }
     if !untold.is_empty() {

@@ -5,17 +5,20 @@ use mimique_stats::RocCurve;
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::courses::LINES;
-use crate::report::figure::svg::{Anchor, Axis, Svg};
+use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
 
 const LEFT: f64 = 60.0;
 const TOP: f64 = 34.0;
 /// Both axes are as long as each other.
 const SIDE: f64 = 280.0;
-/// Between the curves and their names.
-const GAP: f64 = 24.0;
+/// From the curves to their names, which stand in two columns below.
+const NAMES_BELOW: f64 = 58.0;
+const NAME_COLUMN: f64 = 190.0;
 const NAME_LINE: f64 = 18.0;
+/// Letters of a name that a column has room for, with its area.
+const NAME_LETTERS: usize = 20;
 
-/// A curve for each category, with its name and its area beside them.
+/// A curve for each category, with its name and its area below them.
 pub(crate) fn roc_curves(
     language: Language,
     id: &str,
@@ -23,7 +26,8 @@ pub(crate) fn roc_curves(
     curves: &[(String, RocCurve)],
 ) -> Figure {
     let (right, bottom) = (LEFT + SIDE, TOP + SIDE);
-    let mut svg = Svg::new(caption, bottom + 44.0);
+    let names = NAME_LINE * curves.len().div_ceil(2) as f64;
+    let mut svg = Svg::new(caption, bottom + NAMES_BELOW + names);
     let (across, up) = (Axis::new(0.0, 1.0, LEFT, right), Axis::new(0.0, 1.0, bottom, TOP));
     for &tick in &up.ticks {
         let (x, y) = (across.place(tick), up.place(tick));
@@ -54,9 +58,11 @@ pub(crate) fn roc_curves(
             curve.points.iter().map(|[x, y]| [across.place(*x), up.place(*y)]).collect();
         svg.coloured_path(&points, line);
         let area = language.fixed(curve.area, 3);
-        let y = TOP + 10.0 + NAME_LINE * k as f64;
-        svg.coloured_path(&[[right + GAP, y], [right + GAP + 18.0, y]], line);
-        svg.text(right + GAP + 24.0, y + 4.0, "small", Anchor::Start, &format!("{name} {area}"));
+        let x = LEFT + NAME_COLUMN * (k % 2) as f64;
+        let y = bottom + NAMES_BELOW + NAME_LINE * (k / 2) as f64;
+        svg.coloured_path(&[[x, y], [x + 18.0, y]], line);
+        let named = format!("{} {area}", clipped(name, NAME_LETTERS));
+        svg.text(x + 24.0, y + 4.0, "small", Anchor::Start, &named);
         spoken.push(format!("{name} {area}"));
         for [x, y] in &curve.points {
             let numbers = [x, y].map(|value| language.fixed(*value, 4));
