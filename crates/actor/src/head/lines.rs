@@ -17,8 +17,8 @@ pub struct FaceLine {
 /// What a line is of the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceLinePart {
-    /// From ear to ear by the chin.
-    Jaw,
+    /// From the hair line by the ears to the chin.
+    Outline,
     /// A brow, which is drawn thick.
     Brow,
     /// The opening between the lids.
@@ -50,10 +50,24 @@ pub fn face_lines(spec: &HeadSpec) -> Vec<FaceLine> {
         whole.extend(&half[1..]);
         whole
     };
-    // From the chin up to the ear, on the left.
-    const JAW: [(i32, i32); 9] =
-        [(22, 0), (22, 3), (21, 6), (20, 9), (18, 11), (16, 12), (13, 13), (9, 13), (5, 13)];
-    let jaw: Vec<usize> = JAW.map(|(row, column)| grid(row, column)).to_vec();
+    // From the chin by the ear to the hair line, on the left.
+    const OUTLINE: [(i32, i32); 14] = [
+        (22, 0),
+        (22, 3),
+        (21, 6),
+        (20, 9),
+        (18, 11),
+        (16, 12),
+        (13, 13),
+        (9, 13),
+        (5, 13),
+        (3, 13),
+        (1, 11),
+        (0, 8),
+        (0, 4),
+        (0, 0),
+    ];
+    let outline: Vec<usize> = OUTLINE.map(|(row, column)| grid(row, column)).to_vec();
     let nose: Vec<usize> = [(12, 0), (12, 1), (12, 2), (11, 3), (10, 3)]
         .map(|(row, column)| grid(row, column))
         .to_vec();
@@ -66,7 +80,7 @@ pub fn face_lines(spec: &HeadSpec) -> Vec<FaceLine> {
         closed,
     };
     let mut lines = vec![
-        line(FaceLinePart::Jaw, &right_to_left(&jaw), false),
+        line(FaceLinePart::Outline, &right_to_left(&outline), false),
         line(FaceLinePart::Nose, &right_to_left(&nose), false),
         line(FaceLinePart::Lips, &ring(Feature::Mouth, 2), true),
         line(FaceLinePart::Mouth, &ring(Feature::Mouth, 5), true),

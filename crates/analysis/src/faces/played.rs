@@ -12,7 +12,7 @@ const KEY_FRAMES: usize = 16;
 const STILLS: usize = 4;
 /// Heights of the moving face and of a still one.
 const LARGE: f64 = 190.0;
-const SMALL: f64 = 92.0;
+const SMALL: f64 = 86.0;
 
 /// What is said beside the faces.
 pub(super) struct PlayedWords<'w> {
@@ -32,7 +32,7 @@ pub(super) struct DrawnHead {
 
 impl DrawnHead {
     /// Height of the drawing.
-    pub(super) const HEIGHT: f64 = LARGE + 44.0;
+    pub(super) const HEIGHT: f64 = LARGE + 52.0;
 
     /// The built-in head, coarse: lines are all that is drawn of it.
     pub(super) fn new() -> Self {
@@ -109,12 +109,12 @@ impl DrawnHead {
         let left = 24.0;
         let frames = self.in_box(courses, &moments, [left, top + 6.0, LARGE]);
         svg.begin_playable(id, words.press);
-        let backdrop = [left - 12.0, top, self.width(LARGE) + 24.0, LARGE + 12.0];
+        let backdrop = [left - 12.0, top, self.width(LARGE) + 24.0, LARGE + 20.0];
         svg.class_rect(backdrop, "backdrop");
         self.lines_of(svg, &frames, Moving { id: Some(id), still, lasts_s });
         svg.end_playable();
         let under = left + self.width(LARGE) / 2.0;
-        svg.text(under, top + LARGE + 28.0, "small", Anchor::Middle, words.press);
+        svg.text(under, top + LARGE + 36.0, "small", Anchor::Middle, words.press);
         let first = left + self.width(LARGE) + 30.0;
         let step = (WIDTH - first) / 2.0;
         for place in 0..STILLS {
@@ -138,7 +138,7 @@ impl DrawnHead {
             let class = match line.part {
                 FaceLinePart::Brow => "brow",
                 FaceLinePart::Eye | FaceLinePart::Mouth => "opening",
-                FaceLinePart::Jaw | FaceLinePart::Nose | FaceLinePart::Fold => "feature",
+                FaceLinePart::Outline | FaceLinePart::Nose | FaceLinePart::Fold => "feature",
                 FaceLinePart::Lips => "lips",
             };
             svg.moving_path(&own, line.closed, class, moving);

@@ -202,8 +202,8 @@ impl Writer<'_> {
         let language = self.language();
         let id = format!("{}-{}-face", slug(&found.block), slug(&category.category));
         let caption = language.pick(
-            format!("{name}: the face that people have in mind, drawn on the built-in head, and the mean activation of each unit that goes with it. The figure’s table is a file of recorded weights: open it in the studio, or as a capture of a study, to see the face move"),
-            format!("{name} : le visage que les gens ont en tête, dessiné sur la tête intégrée, et l’activation moyenne de chaque unité qui l’accompagne. Le tableau de la figure est un fichier de poids enregistrés : ouvrez-le dans le studio, ou comme capture d’une étude, pour voir bouger le visage"),
+            format!("{name}: the face that people have in mind, drawn on the built-in head, and the mean activation of each unit that goes with it. The figure’s table is a file of recorded weights, which the studio plays on every avatar, as does a study that names it as a capture"),
+            format!("{name} : le visage que les gens ont en tête, dessiné sur la tête intégrée, et l’activation moyenne de chaque unité qui l’accompagne. Le tableau de la figure est un fichier de poids enregistrés, que le studio joue sur tout avatar, comme une étude qui le nomme comme capture"),
         );
         let bins = found.images.times_s.len();
         let width = found.images.times_s.first().map_or(1.0, |first| 2.0 * first);
@@ -214,7 +214,7 @@ impl Writer<'_> {
             seconds: "s",
         };
         let of_face = (courses, width * bins as f64);
-        let svg = face(&caption, of_face, (head, &format!("{id}-played"), &played), axes);
+        let svg = face(&caption, of_face, (head, &played_id(&id), &played), axes);
         let names = courses.iter().map(|course| course.unit.clone());
         let columns = ["frame".to_owned(), "time".to_owned()].into_iter().chain(names);
         let mut data = DataTable::new(&id, &caption, columns);
@@ -246,6 +246,11 @@ impl Writer<'_> {
 /// Units that are significantly more often there.
 fn present(group: &GroupImage) -> impl Iterator<Item = &UnitImage> {
     group.units.iter().filter(|unit| unit.presence.p <= LEVEL && unit.presence.z > 0.0)
+}
+
+/// What is pressed. Times of an animation are said as `ID.click`, where a hyphen would be a minus.
+fn played_id(figure: &str) -> String {
+    format!("{}_played", figure.replace('-', "_"))
 }
 
 fn listed(names: &[&str], none: &str) -> String {
