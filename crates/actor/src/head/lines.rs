@@ -17,7 +17,7 @@ pub struct FaceLine {
 /// What a line is of the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceLinePart {
-    /// From the hair line by the ears to the chin.
+    /// From the crown by the ears to the chin.
     Outline,
     /// A brow, which is drawn thick.
     Brow,
@@ -50,24 +50,24 @@ pub fn face_lines(spec: &HeadSpec) -> Vec<FaceLine> {
         whole.extend(&half[1..]);
         whole
     };
-    // From the chin by the ear to the hair line, on the left.
-    const OUTLINE: [(i32, i32); 14] = [
-        (22, 0),
-        (22, 3),
-        (21, 6),
-        (20, 9),
-        (18, 11),
-        (16, 12),
-        (13, 13),
-        (9, 13),
-        (5, 13),
-        (3, 13),
-        (1, 11),
-        (0, 8),
-        (0, 4),
-        (0, 0),
+    // From the chin by the ear to the crown, on the left.
+    const OUTLINE: [Site; 14] = [
+        Site::Grid(22, 0),
+        Site::Grid(22, 3),
+        Site::Grid(21, 6),
+        Site::Grid(20, 9),
+        Site::Grid(18, 11),
+        Site::Grid(16, 12),
+        Site::Grid(13, 13),
+        Site::Grid(9, 13),
+        Site::Grid(5, 13),
+        Site::Grid(2, 13),
+        Site::Cap(11, 6),
+        Site::Cap(10, 6),
+        Site::Cap(8, 6),
+        Site::Cap(6, 6),
     ];
-    let outline: Vec<usize> = OUTLINE.map(|(row, column)| grid(row, column)).to_vec();
+    let outline: Vec<usize> = OUTLINE.map(|site| topology.at(site)).to_vec();
     let nose: Vec<usize> = [(12, 0), (12, 1), (12, 2), (11, 3), (10, 3)]
         .map(|(row, column)| grid(row, column))
         .to_vec();
