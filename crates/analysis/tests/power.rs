@@ -311,6 +311,16 @@ fn precision_of(
             1 + 3 * people.len()
         );
     }
+    let text = preregistration(&Preregistration {
+        study: &study,
+        config_hash: "hash",
+        power: &found,
+        parameters: &parameters,
+        language: Language::English,
+        curve: None,
+    });
+    assert!(text.contains("No hypothesis is tested") && text.contains("simulated studies per row"));
+    assert!(!text.contains("Each statement says"), "{text}");
     let [block] = &found.precision[..] else { panic!("{:?}", found.precision) };
     assert_eq!(precision_csv(&found).lines().count(), 1 + block.points.len());
     block.points.clone()

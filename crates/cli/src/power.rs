@@ -86,7 +86,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         if !power.precision.is_empty() {
             write(out.join("precision.csv"), precision_csv(&power))?;
         }
-        write(out.join("power.svg"), curve.clone())?;
+        if !power.points.is_empty() {
+            write(out.join("power.svg"), curve.clone())?;
+        }
     }
     if let Some(path) = &args.preregistration {
         let figure = path.with_extension("svg");
@@ -97,10 +99,13 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             power: &power,
             parameters: &parameters,
             language,
-            curve: name.as_deref(),
+            // Without a hypothesis nothing is drawn.
+            curve: name.as_deref().filter(|_| !power.points.is_empty()),
         });
         write(path.clone(), text)?;
-        write(figure, curve)?;
+        if !power.points.is_empty() {
+            write(figure, curve)?;
+        }
     }
     let mut out = std::io::stdout().lock();
     if json {

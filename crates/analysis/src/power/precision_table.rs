@@ -53,16 +53,16 @@ fn table(text: &mut String, block: &BlockPrecision, language: Language) {
             Told::Images => "share of the units of the faces in mind whose presence is found (corrected p of 0.05 or less), and share of the other pairs of unit and answer that are found as well",
         },
         match tells {
-            Told::Thresholds => "largeur de l’intervalle à 95 % du seuil moyen (moyenne sur les études), erreur quadratique moyenne du seuil d’une personne, et part des personnes dont le seuil est dans les niveaux ; les essais sont ceux d’une piste",
+            Told::Thresholds => "largeur de l’intervalle à 95 % du seuil moyen (moyenne sur les études), erreur quadratique moyenne du seuil d’une personne, et part des personnes dont le seuil est dans les niveaux\u{a0}; les essais sont ceux d’une piste",
             Told::Scale => "largeur d’un intervalle à 95 % de ψ au niveau le plus haut (d’après sa dispersion d’une étude à l’autre), et part des études qui ont une échelle",
             Told::Images => "part des unités des visages en tête dont la présence est trouvée (p corrigé de 0,05 au plus), et part des autres paires d’unité et de réponse trouvées aussi",
         },
     );
-    let studies = language.pick(
-        format!("{runs} simulated studies a row"),
-        format!("{runs} études simulées par ligne"),
+    let line = language.pick(
+        format!("**{name}**: {what}; {runs} simulated studies per row."),
+        format!("**{name}**\u{a0}: {what}\u{a0}; {runs} études simulées par ligne."),
     );
-    let _ = writeln!(text, "**{name}**: {what}; {studies}.\n");
+    let _ = writeln!(text, "{line}\n");
     let [trials, people] = language.pick(["trials", "people"], ["essais", "personnes"]);
     let names: &[&str] = language.pick(
         match tells {

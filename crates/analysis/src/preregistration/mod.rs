@@ -73,10 +73,17 @@ pub fn preregistration(from: &Preregistration<'_>) -> String {
         text.line(&format!("- **{}.** {}", hypothesis.id, hypothesis.statement.in_language(code)));
     }
     text.line("");
-    text.both(
+    if from.study.hypotheses.is_empty() {
+        text.both(
+            "No hypothesis is tested: the blocks below are to tell what their analysis says. [Say here what you expect.]",
+            "Aucune hypothèse n’est testée : les blocs ci-dessous servent à établir ce que dit leur analyse. [Dites ici ce que vous attendez.]",
+        );
+    } else {
+        text.both(
         "Each statement says that there is no difference; the tests are two-sided, so that a difference in either direction speaks against it. [If you expect a direction, say so here.]",
         "Chaque énoncé dit qu’il n’y a pas de différence ; les tests sont bilatéraux, une différence dans un sens ou dans l’autre parle contre lui. [Si vous attendez un sens, dites-le ici.]",
     );
+    }
 
     design::write(&mut text, from, &naming);
     sample(&mut text, from);
