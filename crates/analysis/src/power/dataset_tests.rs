@@ -1,15 +1,12 @@
 //! Simulated answers are the same directly and by way of events and CSV.
 
-use std::collections::BTreeMap;
-
-use mimique_session::rows::{self, SessionRecord};
 use mimique_stats::Table;
 use mimique_study::Study;
 use mimique_study::columns::ASSIGNED_CONDITION;
 use serde_json::Value;
 
 use super::design::Design;
-use super::given::text;
+use super::precision;
 use crate::Parameters;
 use crate::simulate::Simulation;
 use crate::trials::export::{Export, Trial};
@@ -24,20 +21,7 @@ fn study(name: &str) -> (Value, Study) {
 /// The tidy export of simulated sessions, as CSV.
 fn csv(study: &Study, hash: &str, parameters: &Parameters, seed: u64, people: u64) -> String {
     let simulation = Simulation::new(study, hash, parameters, seed).unwrap();
-    let mut sessions = simulation.sessions(people, |session| session).unwrap();
-    sessions.retain(|session| !session.events.is_empty());
-    let records = sessions
-        .iter()
-        .map(|session| SessionRecord { started: &session.started, events: &session.events });
-    let table = rows::tidy(study, &BTreeMap::new(), records);
-    let quoted = |cell: String| format!("\"{}\"", cell.replace('"', "\"\""));
-    let line = |cells: Vec<String>| cells.into_iter().map(quoted).collect::<Vec<_>>().join(",");
-    let mut lines = vec![line(table.columns.iter().map(|c| c.name.clone()).collect())];
-    for row in &table.rows {
-        let cell = |value: &Value| if value.is_null() { String::new() } else { text(value) };
-        lines.push(line(row.iter().map(cell).collect()));
-    }
-    lines.join("\n")
+    precision::csv(study, &simulation.sessions(people, |session| session).unwrap())
 }
 
 /// The demo study with every rule that leaves people or trials out, a response time, and a condition.

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::given::text;
 use super::{PowerError, PowerOptions, run_seed};
 use crate::faces::images;
 use crate::report::document::csv_text;
@@ -235,18 +236,18 @@ fn one(
 }
 
 fn export(study: &Study, sessions: &[SimulatedSession]) -> Option<Export> {
+    Export::read(&Table::parse(csv(study, sessions).into_bytes()).ok()?, study).ok()
+}
+
+/// The tidy export of simulated sessions; whoever took the answers back is not in it.
+pub(super) fn csv(study: &Study, sessions: &[SimulatedSession]) -> String {
     let kept = sessions.iter().filter(|session| !session.events.is_empty());
     let records = kept.map(|own| SessionRecord { started: &own.started, events: &own.events });
     let table = tidy(study, &BTreeMap::new(), records);
-    let cell = |cell: &Value| match cell {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    };
+    let cell = |cell: &Value| if cell.is_null() { String::new() } else { text(cell) };
     let head: Vec<String> = table.columns.iter().map(|column| column.name.clone()).collect();
     let rows = table.rows.iter().map(|row| row.iter().map(cell).collect::<Vec<String>>());
-    let csv = csv_text(std::iter::once(head).chain(rows));
-    Export::read(&Table::parse(csv.into_bytes()).ok()?, study).ok()
+    csv_text(std::iter::once(head).chain(rows))
 }
 
 fn point(runs: &[&Found], trials: u32, participants: usize, tells: Told) -> PrecisionPoint {

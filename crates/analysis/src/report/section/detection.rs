@@ -83,13 +83,18 @@ impl Writer<'_> {
         let answers = self.export.answers_to(&asked.id).iter().enumerate();
         let counted = answers.filter(|(place, _)| is_counted(*place));
         let answers: Vec<&Answer> = counted.map(|(_, answer)| answer).collect();
+        let [people, shown, given] = self.told(&answers);
+        detection(&people, &shown, &given).ok()
+    }
+
+    /// Of each answer: who gave it, what was there, what was said.
+    pub(super) fn told(&self, answers: &[&Answer]) -> [Factor; 3] {
         let people = answers.iter().map(|own| Some(self.export.people[own.person].id.as_str()));
         let people = Factor::from_cells("participant", people, |_| None);
         let shown = answers.iter().map(|own| own.truth.as_deref());
         let shown = Factor::from_cells("truth", shown, |_| None);
         let given = answers.iter().map(|own| Some(&*own.text));
-        let given = Factor::from_cells("answer", given, |_| None);
-        detection(&people, &shown, &given).ok()
+        [people, shown, Factor::from_cells("answer", given, |_| None)]
     }
 
     fn detection_table(&self, result: &QuestionDetection, truth: &str) -> DataTable {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use mimique_stats::{CategoryRoc, Factor, Numbers, Roc, roc};
+use mimique_stats::{CategoryRoc, Numbers, Roc, roc};
 use mimique_study::KindOfQuestion as _;
 use serde::Serialize;
 
@@ -10,6 +10,7 @@ use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure::roc_curves;
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
+use crate::trials::export::Answer;
 
 /// The curves of a question.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -63,13 +64,8 @@ impl Writer<'_> {
         let ratings = self.export.answers_to(confidence).iter();
         let sure: HashMap<usize, f64> =
             ratings.filter_map(|answer| Some((answer.trial, answer.number?))).collect();
-        let answers = self.export.answers_to(&asked.id);
-        let people = answers.iter().map(|own| Some(self.export.people[own.person].id.as_str()));
-        let people = Factor::from_cells("participant", people, |_| None);
-        let shown = answers.iter().map(|own| own.truth.as_deref());
-        let shown = Factor::from_cells("truth", shown, |_| None);
-        let given = answers.iter().map(|own| Some(&*own.text));
-        let given = Factor::from_cells("answer", given, |_| None);
+        let answers: Vec<&Answer> = self.export.answers_to(&asked.id).iter().collect();
+        let [people, shown, given] = self.told(&answers);
         let values = answers.iter().map(|own| sure.get(&own.trial).copied().unwrap_or(f64::NAN));
         let sure = Numbers { name: confidence.to_owned(), values: values.collect() };
         roc(&people, &shown, &given, &sure).ok()
