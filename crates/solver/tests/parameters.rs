@@ -45,6 +45,16 @@ fn defaults_of_every_method_are_within_their_ranges() {
         assert_eq!(resolved.problems(), [], "{method}");
         assert_eq!(resolved.resolved(), resolved, "{method}");
     }
+    // A form writes every default out.
+    for method in Method::ALL {
+        let mut written = json!({ "method": method.name() });
+        for row in PARAMETERS.iter().filter(|row| method.uses(row.about.group)) {
+            if let Some(default) = row.default_of(method) {
+                written[row.key] = default;
+            }
+        }
+        assert!(MethodSpec::checked(&written).is_ok(), "{written}");
+    }
     let of = |method, key| Parameter::of(key).unwrap().default_of(method);
     assert_eq!(of(Method::Lsts, "alpha"), Some(json!(0.3)));
     assert_eq!(of(Method::LstsNorm, "alpha"), Some(json!(0.5)));

@@ -42,7 +42,9 @@ impl Fit {
         let problem = Problem::new(operators, spec)?;
         let all_visible = VisibleMarkers::new(&problem, vec![false; problem.marker_count]);
         let second = match spec.second() {
-            Some(second) => Some(Box::new((Fit::new(operators, &second)?, spec.blend()))),
+            Some(second) => {
+                Some(Box::new((Fit::new(operators, &second)?, spec.blend.unwrap_or_default())))
+            }
             None => None,
         };
         Ok(Fit { problem, all_visible, second })

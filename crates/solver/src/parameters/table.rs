@@ -372,10 +372,10 @@ parameters! {
     { group: Group::Blend, label: "Blended with", found_by: Some("no second method"), }
 
     /// The second method's share of the weights: 0 is the first method, 1 the second.
-    blend: Option<f64> as "blend" = |_| 0.0,
+    blend: Option<f64> as "blend",
     {
         group: Group::Blend, label: "Share of the second method", range: Range::between(0.0, 1.0),
-        step: Some(0.05),
+        step: Some(0.05), found_by: Some("0"),
         effect: Some(Effect {
             when: |spec| spec.blend_with.is_some(),
             because: "no second method is named (blendWith)",
