@@ -52,8 +52,8 @@ export class Parameters {
         this.#number(row, { placeholder: String(row.default[i]), ariaLabel: `${label}, ${end}` }));
       return this.#field(row, `${label}, from and to`, ends);
     }
-    // A share is a slider.
-    if (row.minimum === 0 && row.maximum === 1 && !row.unit) return this.#share(row, label);
+    // A share is a slider, which always stands somewhere: one without a default is a number.
+    if (row.minimum === 0 && row.maximum === 1 && !row.unit && row.default !== null) return this.#share(row, label);
     return this.#field(row, label, [this.#number(row, { placeholder: String(row.default ?? row.foundBy) })]);
   }
 
