@@ -37,6 +37,8 @@ export function drawFigure(canvas, figure, seconds, lungs) {
   const [top, bottom] = [24, 14];
   // A step is three quarters as long as the body is tall.
   const scale = Math.min((height - top - bottom) / (tall + AROUND), width / 2 / (0.76 * tall));
+  // While the page is being laid out the canvas may have no room: nothing is drawn then.
+  if (scale <= 0) return;
   const floor = height - bottom;
   context.lineCap = context.lineJoin = "round";
   context.strokeStyle = soft;
