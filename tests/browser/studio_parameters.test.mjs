@@ -191,7 +191,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
     await page.waitForFunction(() => document.querySelector("#training-facts").textContent.includes("open the capture that these weights belong to"));
     assert.ok(await option.evaluate((each) => each.disabled));
     await page.setInputFiles("#training-file", take);
-    await page.waitForFunction(() => !document.querySelector('section[aria-label="Method A"] option[value=regression]').disabled, null, { timeout: 60_000 });
+    await page.waitForFunction(() => !document.querySelector('section[aria-label="Method A"] select:not([name=blendWith]) > option[value=regression]').disabled, null, { timeout: 60_000 });
     assert.match(await page.locator("#training-facts").textContent(), /JawMoCap\.c3d: 41 markers, 1590 frames.*known\.csv: weights, 1590 frames/);
     await page.locator("#training-end").fill("90");
     await page.locator("#training-end").press("Enter");
