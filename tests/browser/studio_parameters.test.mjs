@@ -184,7 +184,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
     await page.goto(`${server.url}?backend=webgl2`);
     await page.waitForFunction(() => document.querySelector("#map-facts").textContent.includes("41 markers"), null, { timeout: 120_000 });
     const hash = await weightsHash(page, "A");
-    const option = page.locator(`${PANEL} option[value=regression]`);
+    const option = page.locator(`${PANEL} select:not([name=blendWith]) > option[value=regression]`);
     assert.ok(await option.evaluate((each) => each.disabled));
     assert.match(await option.textContent(), /under Files: open a range of motion and its weights/);
     await page.setInputFiles("#training-weights-file", file("known.csv"));
