@@ -6,7 +6,7 @@ import { refreshPeriod } from "./clock.js";
 import { StageFailure } from "./failure.js";
 import { VideoLayer } from "./video.js";
 import { fetchPack } from "./packs.js";
-import { Playback, inTurn as inTurnLog } from "./playback.js";
+import { Playback, joined } from "./playback.js";
 
 // Modules, scripts and shaders are served under the hash of all of them.
 const renderer = /\/assets\/([0-9a-f]+)\//.exec(import.meta.url)?.[1] ?? "";
@@ -130,11 +130,12 @@ class Stage {
       }
       // The trial is offered again: be ready for it. A canvas that cannot be opened says so then.
       for (const { stage } of parts) if (stage.#lost !== null) await stage.reopen().catch(() => {});
-      return { ...this.#log(shown, inTurnLog(logs, lasts)), sound: ofAll(heardLogs) };
+      return { ...this.#log(shown, joined(logs, lasts)), sound: ofAll(heardLogs) };
     } catch (error) {
       for (const { stage } of parts) stage.#fail(error.message);
-      logs.push(playbacks[logs.length].log(error.message));
-      return this.#log(shown, inTurnLog(logs, lasts));
+      const last = Math.min(logs.length, playbacks.length - 1);
+      logs[last] = playbacks[last].log(error.message);
+      return this.#log(shown, joined(logs, lasts));
     } finally {
       for (const { stage, clip } of parts) {
         stage.#playback = null;

@@ -17,7 +17,7 @@ const SILENT_MS = 10_000;
 const VIDEO_START_MS = 30;
 
 /// The logs of clips in turn as one; `durationsMs`: how long each clip is, in the log they follow each other.
-export function inTurn(logs, durationsMs) {
+export function joined(logs, durationsMs) {
   const last = logs[logs.length - 1];
   const most = (name) => Math.max(...logs.map((log) => log[name]));
   let before = 0;

@@ -56,8 +56,8 @@ pub mod components {
 
 pub use language::Language;
 pub use power::{
-    BlockPrecision, Columns, HypothesisPower, Power, PowerError, PowerOptions, PowerPoint,
-    PrecisionPoint, Rate, Told, no_effect, power, power_csv, power_curve, power_markdown,
+    BlockPrecision, Columns, Estimand, HypothesisPower, Power, PowerError, PowerOptions,
+    PowerPoint, PrecisionPoint, Rate, no_effect, power, power_csv, power_curve, power_markdown,
     power_runs, precision_csv, precision_markdown,
 };
 pub use preregistration::{Preregistration, preregistration};

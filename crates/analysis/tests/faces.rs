@@ -71,6 +71,12 @@ fn planted_faces_are_found_again() {
     let widest = widths.iter().copied().fold(0.0, f64::max);
     assert!(widest > 1.1 * widths[0] && widths[16] < 1.1 * widths[0], "{widths:?}");
     assert!(lips[1..].iter().all(|path| !path.contains("<animate")));
+    // What is pressed and what is clipped is named once on the page, or one face would have the eyes of another.
+    let html = text(&written, "report.html");
+    let ids: Vec<&str> =
+        html.split(" id=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    let once: std::collections::BTreeSet<&&str> = ids.iter().collect();
+    assert_eq!((ids.len(), once.len() > 40), (once.len(), true), "{ids:?}");
     let face = text(&written, "tables/figure-faces-joy-face.csv");
     let lines: Vec<&str> = face.lines().collect();
     assert_eq!(lines[0], "frame,time,AU06,AU12");

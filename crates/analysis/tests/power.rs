@@ -342,7 +342,10 @@ fn intervals_of_thresholds_and_scales_narrow_with_trials_and_people() {
     // Few trials leave everybody near the middle of the levels: the mean is narrow, and of people little is known.
     let error = |trials| of(&limit, trials, 18).error.unwrap();
     assert!(error(40) < 0.8 * error(10), "{limit:?}");
-    assert!(limit.iter().all(|point| point.told > 0.75 && point.falsely.is_none()), "{limit:?}");
+    assert!(
+        limit.iter().all(|point| point.found > 0.75 && point.found_falsely.is_none()),
+        "{limit:?}"
+    );
     let scale = precision_of(
         "scale-alpha.json",
         |value| value["hypotheses"] = serde_json::json!([]),
@@ -366,12 +369,12 @@ fn faces_in_mind_are_found_by_more_people_and_trials_and_nothing_else_is() {
     };
     let found = precision_of("reverse-correlation.json", change, &[3, 10], 2);
     let told = |trials: u32, people: usize| {
-        found.iter().find(|it| (it.trials, it.participants) == (trials, people)).unwrap().told
+        found.iter().find(|it| (it.trials, it.participants) == (trials, people)).unwrap().found
     };
     assert!(told(120, 10) > told(30, 3) + 0.2, "{found:?}");
     assert!(told(120, 10) > 0.6, "{found:?}");
     assert!(
-        found.iter().all(|point| point.falsely.unwrap() < 0.03 && point.width.is_none()),
+        found.iter().all(|point| point.found_falsely.unwrap() < 0.03 && point.width.is_none()),
         "{found:?}"
     );
 }

@@ -40,6 +40,11 @@ impl PairCounts {
         }
     }
 
+    /// Adds those of somebody else.
+    pub fn add_all(&mut self, others: &Self) {
+        others.0.iter().for_each(|count| self.add(count));
+    }
+
     /// Adds a choice: which of left and right was chosen, or neither.
     pub fn chosen(&mut self, [left, right]: [&str; 2], chosen: Option<&str>) {
         let mut items = [left, right].map(str::to_owned);

@@ -8,7 +8,8 @@ use std::collections::HashMap;
 
 use mimique_adaptive::Trajectory;
 use mimique_stats::{
-    ReverseCorrelation, ReverseCorrelationOptions, ReverseTrial, ReverseTrials, reverse_correlation,
+    ReverseCorrelation, ReverseCorrelationOptions, ReverseTrial, ReverseTrials, UnitImage,
+    reverse_correlation,
 };
 use mimique_study::{KindOfQuestion as _, ReverseCorrelationComponent, ShownCourse, Study};
 use serde::Serialize;
@@ -19,6 +20,14 @@ use crate::trials::export::{Export, ShownFace};
 pub(crate) const BINS: usize = 30;
 /// Draws of the permutation test.
 pub(crate) const PERMUTATIONS: usize = 1000;
+
+/// A corrected p up to which a cell is called significant.
+const LEVEL: f64 = 0.05;
+
+/// Whether a unit is significantly more often there.
+pub(crate) fn is_present(unit: &UnitImage) -> bool {
+    unit.presence.p <= LEVEL && unit.presence.z > 0.0
+}
 
 /// The images of a block.
 #[derive(Debug, Clone, PartialEq, Serialize)]

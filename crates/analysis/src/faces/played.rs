@@ -46,24 +46,12 @@ impl DrawnHead {
         head
     }
 
-    /// The points of every line with units at these activations, metres.
-    fn points(&self, units: &[(&str, f64)]) -> Vec<Vec<[f64; 2]>> {
-        let Some(skin) = self.avatar.meshes.first() else { return Vec::new() };
-        let mut weights = vec![0.0; self.avatar.shape_names.len()];
-        for (name, activation) in units {
-            let unit = ActionUnit::of(name, &self.avatar.shape_names);
-            for (shape, share) in unit.iter().flat_map(|unit| &unit.shapes) {
-                weights[*shape] += activation * share;
-            }
-        }
+    /// The points of every line at these weights of the head's shapes, metres.
+    fn points(&self, weights: &[f64]) -> Vec<Vec<[f64; 2]>> {
+        let Some(skin) = self.avatar.skin() else { return Vec::new() };
+        let posed = skin.posed(weights);
         let at = |&vertex: &u32| {
-            let [mut x, mut y, _] = skin.positions[vertex as usize].map(f64::from);
-            for (shape, weight) in skin.shapes.iter().zip(&weights).filter(|(_, w)| **w != 0.0) {
-                if let Ok(place) = shape.vertices.binary_search(&vertex) {
-                    let [dx, dy, _] = shape.deltas[place].map(f64::from);
-                    (x, y) = (x + weight * dx, y + weight * dy);
-                }
-            }
+            let [x, y, _] = posed[vertex as usize].map(f64::from);
             [x, y]
         };
         self.lines.iter().map(|line| line.vertices.iter().map(at).collect()).collect()
@@ -79,10 +67,19 @@ impl DrawnHead {
         let [low_x, _, low_y, high_y] = self.bounds;
         let scale = height / (high_y - low_y);
         let place = |[x, y]: [f64; 2]| [left + (x - low_x) * scale, top + (high_y - y) * scale];
+        let shape_names = &self.avatar.shape_names;
+        let units: Vec<(ActionUnit, &UnitCourse)> = courses
+            .iter()
+            .filter_map(|course| Some((ActionUnit::of(&course.unit, shape_names)?, course)))
+            .collect();
         let of = |&moment: &f64| {
-            let units: Vec<(&str, f64)> =
-                courses.iter().map(|own| (own.unit.as_str(), activation(own, moment))).collect();
-            let lines = self.points(&units).into_iter();
+            let mut weights = vec![0.0; shape_names.len()];
+            for (unit, course) in &units {
+                for (shape, share) in &unit.shapes {
+                    weights[*shape] += activation(course, moment) * share;
+                }
+            }
+            let lines = self.points(&weights).into_iter();
             lines.map(|line| line.into_iter().map(place).collect()).collect()
         };
         moments.iter().map(of).collect()
@@ -111,7 +108,7 @@ impl DrawnHead {
         svg.begin_playable(id, words.press);
         let backdrop = [left - 12.0, top, self.width(LARGE) + 24.0, LARGE + 20.0];
         svg.class_rect(backdrop, "backdrop");
-        self.lines_of(svg, &frames, Moving { id: Some(id), still, lasts_s });
+        self.lines_of(svg, &frames, Moving { id, still, lasts_s: Some(lasts_s) });
         svg.end_playable();
         let under = left + self.width(LARGE) / 2.0;
         svg.text(under, top + LARGE + 36.0, "small", Anchor::Middle, words.press);
@@ -122,7 +119,8 @@ impl DrawnHead {
             let x = first + step * (place % 2) as f64 + (step - self.width(SMALL)) / 2.0;
             let y = top + 6.0 + (SMALL + 22.0) * (place / 2) as f64;
             let frames = self.in_box(courses, &[0.0, moment], [x, y, SMALL]);
-            self.lines_of(svg, &frames, Moving { id: None, still: 1, lasts_s });
+            let own = format!("{id}_{place}");
+            self.lines_of(svg, &frames, Moving { id: &own, still: 1, lasts_s: None });
             let time = format!("{:.2} {}", moment * lasts_s, words.seconds);
             let middle = x + self.width(SMALL) / 2.0;
             svg.text(middle, y + SMALL + 14.0, "small", Anchor::Middle, &time);

@@ -1,15 +1,12 @@
 //! What the report says of blocks of reverse correlation.
 
-use mimique_stats::{CategoryImages, GroupImage, UnitCourse, UnitImage};
+use mimique_stats::{CategoryImages, GroupImage, UnitCourse};
 
 use super::figure::{ImageWords, face, image};
 use super::played::{DrawnHead, PlayedWords};
-use super::{BlockImages, FoundImages, PERMUTATIONS, images};
+use super::{BlockImages, FoundImages, LEVEL, PERMUTATIONS, images, is_present};
 use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
-
-/// A corrected p up to which a cell is called significant.
-const LEVEL: f64 = 0.05;
 
 impl Writer<'_> {
     /// The images of each category, for each block of reverse correlation.
@@ -74,7 +71,8 @@ impl Writer<'_> {
             return;
         };
         let (answers, people) = (category.answers, category.people);
-        let seen: Vec<String> = present(&group).map(|unit| unit.unit.clone()).collect();
+        let seen = group.units.iter().filter(|unit| is_present(unit));
+        let seen: Vec<String> = seen.map(|unit| unit.unit.clone()).collect();
         let units = if seen.is_empty() {
             language.pick("no unit", "aucune unité").to_owned()
         } else {
@@ -191,7 +189,7 @@ impl Writer<'_> {
         self.blocks.push(Block::Table(table));
     }
 
-    /// The face in mind; its data are recorded weights, which every avatar plays.
+    /// The face in mind; its data are recorded weights, which every avatar that has these units plays.
     fn face_figure(
         &mut self,
         head: &DrawnHead,
@@ -202,8 +200,8 @@ impl Writer<'_> {
         let language = self.language();
         let id = format!("{}-{}-face", slug(&found.block), slug(&category.category));
         let caption = language.pick(
-            format!("{name}: the face that people have in mind, drawn on the built-in head, and the mean activation of each unit that goes with it. The figure’s table is a file of recorded weights, which the studio plays on every avatar, as does a study that names it as a capture"),
-            format!("{name} : le visage que les gens ont en tête, dessiné sur la tête intégrée, et l’activation moyenne de chaque unité qui l’accompagne. Le tableau de la figure est un fichier de poids enregistrés, que le studio joue sur tout avatar, comme une étude qui le nomme comme capture"),
+            format!("{name}: the face that people have in mind, drawn on the built-in head, and the mean activation of each unit that goes with it. The figure’s table is a file of recorded weights, which the studio plays on every avatar that has these units, as does a study that names it as a capture"),
+            format!("{name} : le visage que les gens ont en tête, dessiné sur la tête intégrée, et l’activation moyenne de chaque unité qui l’accompagne. Le tableau de la figure est un fichier de poids enregistrés, que le studio joue sur tout avatar qui a ces unités, comme le fait une étude qui le nomme comme capture"),
         );
         let bins = found.images.times_s.len();
         let width = found.images.times_s.first().map_or(1.0, |first| 2.0 * first);
@@ -241,11 +239,6 @@ impl Writer<'_> {
         );
         self.figure(Figure { id, caption, alt, svg, data });
     }
-}
-
-/// Units that are significantly more often there.
-fn present(group: &GroupImage) -> impl Iterator<Item = &UnitImage> {
-    group.units.iter().filter(|unit| unit.presence.p <= LEVEL && unit.presence.z > 0.0)
 }
 
 /// What is pressed. Times of an animation are said as `ID.click`, where a hyphen would be a minus.

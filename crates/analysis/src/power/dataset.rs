@@ -119,22 +119,11 @@ impl<'d> Data<'d> {
                 {
                     break;
                 }
-                Step::Trial { clip, beside, block } => {
-                    has_rows = true;
-                    let shown = (*clip, *beside, block.as_str(), done);
-                    let own = (&mut who, &mut runs, &mut pairs);
-                    self.trial(&mut person, own, place, shown, &earlier);
-                    done += 1;
-                }
-                Step::DrawnPair(block) => {
-                    let Some([left, right]) = pairs.next(block, &self.choices) else { continue };
-                    has_rows = true;
-                    let design = self.design;
-                    let copies = design.copies(&left).iter().zip(design.copies(&right));
-                    for (&clip, &right) in copies {
-                        let beside = Some(Companion { clip: right, left: false });
-                        let own = (&mut who, &mut runs, &mut pairs);
+                Step::Trial { block, .. } | Step::DrawnPair(block) => {
+                    for (clip, beside) in self.shown(step, &mut pairs) {
+                        has_rows = true;
                         let shown = (clip, beside, block.as_str(), done);
+                        let own = (&mut who, &mut runs, &mut pairs);
                         self.trial(&mut person, own, place, shown, &earlier);
                         done += 1;
                     }
@@ -153,6 +142,21 @@ impl<'d> Data<'d> {
         }
         self.export.people.push(who);
         self.stages.push("live");
+    }
+
+    /// The clips of a step, each with what stands beside it: of a drawn pair every copy.
+    fn shown(&self, step: &Step, pairs: &mut OwnPairs<'d>) -> Vec<(usize, Option<Companion>)> {
+        let block = match step {
+            Step::Trial { clip, beside, .. } => return vec![(*clip, *beside)],
+            Step::DrawnPair(block) => block,
+            Step::Page(_) => return Vec::new(),
+        };
+        let drawn = pairs.next(block, &self.choices);
+        let copies = drawn.iter().flat_map(|[left, right]| {
+            self.design.copies(left).iter().zip(self.design.copies(right))
+        });
+        let beside = |right| Some(Companion { clip: right, left: false });
+        copies.map(|(&left, &right)| (left, beside(right))).collect()
     }
 
     fn trial(

@@ -31,7 +31,7 @@ use crate::language::naming::Naming;
 use crate::simulate::{Draws, Model, Parameters, ParametersError};
 pub use curve::power_curve;
 use design::Design;
-pub use precision::{BlockPrecision, PrecisionPoint, Told};
+pub use precision::{BlockPrecision, Estimand, PrecisionPoint};
 pub use precision_table::{precision_csv, precision_markdown};
 pub(crate) use table::enough;
 pub use table::{no_effect, power_csv, power_markdown};
@@ -68,7 +68,7 @@ pub struct Power {
     pub alpha: f64,
     /// A point for each number of people and of clips, in this order.
     pub points: Vec<PowerPoint>,
-    /// How exactly blocks tell what no hypothesis tests: thresholds, scales, faces in mind.
+    /// How exactly blocks estimate what no hypothesis tests: thresholds, scales, faces in mind.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub precision: Vec<BlockPrecision>,
 }

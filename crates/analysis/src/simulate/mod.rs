@@ -112,8 +112,7 @@ impl<'s> Simulation<'s> {
         let in_turn = (1..=participants).map(|participant| {
             let session = self.session_after(participant, &others)?;
             for (block, own) in &session.choices {
-                let all = others.entry(block.clone()).or_default();
-                own.0.iter().for_each(|count| all.add(count));
+                others.entry(block.clone()).or_default().add_all(own);
             }
             Ok(made(session))
         });

@@ -9,9 +9,9 @@ use super::sessions::token_hash;
 use crate::error::Error;
 use crate::state::App;
 
-/// Choices of everybody else, in the same version and stage of the study, between the levels of a block of pairs; none of a block
-/// that does not draw its pairs by them, and of a version that is not hosted any more. Whoever is deleted is not among
-/// them. They are as new as the sums of the dashboard.
+/// Choices of everybody else, in the same version and stage of the study, between the levels of a block of pairs; none
+/// of a block that does not draw its pairs by them, and of a version that is not hosted any more. Whoever is deleted is
+/// not among them. They are as new as the sums of the dashboard.
 pub(crate) async fn counts(
     State(app): State<App>,
     Path((token, component)): Path<(String, String)>,
@@ -36,7 +36,7 @@ pub(crate) async fn counts(
             continue;
         }
         let pairs = sums.as_ref().and_then(|sums| sums.pairs.get(&component));
-        pairs.into_iter().flat_map(|pairs| &pairs.0).for_each(|count| counts.add(count));
+        pairs.into_iter().for_each(|pairs| counts.add_all(pairs));
     }
     Ok(Json(counts.0))
 }

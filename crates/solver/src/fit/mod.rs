@@ -41,12 +41,9 @@ impl Fit {
     pub fn new(operators: &Operators, spec: &MethodSpec) -> Result<Fit, FitError> {
         let problem = Problem::new(operators, spec)?;
         let all_visible = VisibleMarkers::new(&problem, vec![false; problem.marker_count]);
-        let second = match spec.second() {
-            Some(second) => {
-                Some(Box::new((Fit::new(operators, &second)?, spec.blend.unwrap_or_default())))
-            }
-            None => None,
-        };
+        let share = spec.blend.unwrap_or_default();
+        let second = spec.second().map(|second| Fit::new(operators, &second)).transpose()?;
+        let second = second.map(|second| Box::new((second, share)));
         Ok(Fit { problem, all_visible, second })
     }
 
@@ -66,8 +63,8 @@ impl Fit {
         self.all_visible.least_norm
     }
 
-    /// A solver of consecutive frames, of a blend by its first method alone. A method that solves windows sees one frame at a time here, without
-    /// second differences.
+    /// A solver of consecutive frames, of a blend by its first method alone. A method that solves windows sees one
+    /// frame at a time here, without second differences.
     pub fn frames(&self) -> FrameSolver<'_> {
         FrameSolver::new(self)
     }
@@ -93,8 +90,8 @@ impl Fit {
     /// The frames of each chunk of [`CHUNK_FRAMES`] start from one another, the first one cold: the
     /// answer has the same bits however the chunks are shared out. With the feature `parallel` they
     /// are solved on all cores. Methods that hold to the last frame solve the whole take in order, and
-    /// those with second differences window by window ([`crate::WINDOW_FRAMES`], [`crate::LOOK_AHEAD`]). Of a blend both
-    /// methods solve the take, and their weights are mixed frame by frame.
+    /// those with second differences window by window ([`crate::WINDOW_FRAMES`], [`crate::LOOK_AHEAD`]). Of
+    /// a blend both methods solve the take, and their weights are mixed frame by frame.
     ///
     /// # Errors
     /// [`FitError::Displacements`] unless `d` is whole frames.

@@ -127,22 +127,23 @@ impl Scalar for [f64; 2] {
     }
 }
 
+// What one of them is called, and all of them: words of choices, names of methods.
 macro_rules! words {
-    ($($choice:ident)+) => {$(
+    ($word:ident, $words:ident: $($choice:ident)+) => {$(
         impl Scalar for $choice {
-            const KIND: Kind = Kind::Word($choice::WORDS);
-            const BY_NAME: Kind = Kind::Word($choice::WORDS);
+            const KIND: Kind = Kind::Word($choice::$words);
+            const BY_NAME: Kind = Kind::Word($choice::$words);
 
             fn read(value: &Value) -> Result<$choice, SpecFault> {
                 let Some(found) = value.as_str() else { return Err(wrong(value, Self::KIND)) };
-                let choice = $choice::ALL.iter().find(|choice| choice.word() == found);
+                let choice = $choice::ALL.iter().find(|choice| choice.$word() == found);
                 choice.copied().ok_or_else(|| {
-                    SpecFault::UnknownWord { found: found.to_owned(), words: $choice::WORDS }
+                    SpecFault::UnknownWord { found: found.to_owned(), words: $choice::$words }
                 })
             }
 
             fn json(self) -> Value {
-                json!(self.word())
+                json!(self.$word())
             }
 
             fn fault(self, _: &Limits) -> Option<SpecFault> {
@@ -152,27 +153,8 @@ macro_rules! words {
     )+};
 }
 
-impl Scalar for Method {
-    const KIND: Kind = Kind::Word(Method::NAMES);
-    const BY_NAME: Kind = Kind::Word(Method::NAMES);
-
-    fn read(value: &Value) -> Result<Method, SpecFault> {
-        let Some(found) = value.as_str() else { return Err(wrong(value, Self::KIND)) };
-        let method = Method::ALL.into_iter().find(|method| method.name() == found);
-        method
-            .ok_or_else(|| SpecFault::UnknownWord { found: found.to_owned(), words: Method::NAMES })
-    }
-
-    fn json(self) -> Value {
-        json!(self.name())
-    }
-
-    fn fault(self, _: &Limits) -> Option<SpecFault> {
-        None
-    }
-}
-
-words! { Association Gaze Hold Inference LaplacianKind Unit Unsolved Untold }
+words! { name, NAMES: Method }
+words! { word, WORDS: Association Gaze Hold Inference LaplacianKind Unit Unsolved Untold }
 
 impl<T: Scalar> Stored for Option<T> {
     const KIND: Kind = T::KIND;

@@ -20,15 +20,15 @@ pub struct Svg {
     is_playable: bool,
 }
 
-/// A line that moves when the part of the drawing is pressed that it belongs to.
+/// How the lines of a part of a drawing move.
 #[derive(Clone, Copy)]
 pub(crate) struct Moving<'i> {
-    /// What is pressed; none of a line that stays still.
-    pub id: Option<&'i str>,
+    /// Identifier of the part, the only one of a page; where the part is pressed, the lines move.
+    pub id: &'i str,
     /// The frame that is drawn where nothing moves.
     pub still: usize,
-    /// How long it moves, seconds.
-    pub lasts_s: f64,
+    /// How long they move, seconds; none of lines that stay still.
+    pub lasts_s: Option<f64>,
 }
 
 /// Where a text is anchored.
@@ -166,8 +166,7 @@ impl Svg {
         let xs = || rest.iter().map(|point| point[0]);
         let width = xs().fold(f64::MIN, f64::max) - xs().fold(f64::MAX, f64::min);
         let [x, y] = [middle(0), middle(1)];
-        let own = moving.id.map_or_else(|| format!("{}-{}", short(x), short(y)), str::to_owned);
-        let id = format!("{own}-iris-{number}").replace('.', "_");
+        let id = format!("{}_iris_{number}", moving.id);
         let clip = moving_outline(opening, true, "", moving);
         let (radius, pupil) = (short(0.21 * width), short(0.1 * width));
         let [x, y] = [short(x), short(y)];
@@ -228,13 +227,14 @@ fn moving_outline(
     };
     let still = frames.get(moving.still).map_or_else(String::new, |points| outline(points));
     let moves = frames.windows(2).any(|pair| pair[0] != pair[1]);
-    match moving.id.filter(|_| moves) {
+    match moving.lasts_s.filter(|_| moves) {
         None => format!(r#"<path d="{still}"{attributes}/>"#),
-        Some(id) => {
+        Some(lasts_s) => {
             let values: Vec<String> = frames.iter().map(|points| outline(points)).collect();
             format!(
-                r#"<path d="{still}"{attributes}><animate attributeName="d" begin="{id}.click" dur="{}s" values="{}"/></path>"#,
-                short(moving.lasts_s),
+                r#"<path d="{still}"{attributes}><animate attributeName="d" begin="{}.click" dur="{}s" values="{}"/></path>"#,
+                moving.id,
+                short(lasts_s),
                 values.join(";")
             )
         }

@@ -64,8 +64,9 @@ struct Places {
     answer: usize,
     /// Where the study has blocks of pairs: the levels left and right, and the chosen one.
     items: Option<[usize; 3]>,
-    /// Where the study has adaptive blocks: the track, the level, and what is known of the threshold.
-    levels: Option<[usize; 3]>,
+    /// Where the study has adaptive blocks: the track, the level, whether no track counts it, and what is known of the
+    /// threshold.
+    levels: Option<[usize; 4]>,
     attention_passed: usize,
     duration: usize,
     frames: usize,
@@ -90,8 +91,8 @@ impl Places {
                 .map(|((left, right), chosen)| [left, right, chosen]),
             levels: place("track")
                 .zip(place("level"))
-                .zip(place("posterior_mean"))
-                .map(|((track, level), mean)| [track, level, mean]),
+                .zip(place("level_catch").zip(place("posterior_mean")))
+                .map(|((track, level), (catch, mean))| [track, level, catch, mean]),
             attention_passed: place("attention_passed")?,
             duration: place("duration")?,
             frames: place("frames")?,
@@ -165,8 +166,9 @@ impl Counter {
                 let by = self.counting.get(response).copied().unwrap_or(Counting::Texts);
                 let tally = sums.answers.entry(response.to_owned()).or_default();
                 tally.count(&row[places.answer], by);
-                if let Some([track, level, mean]) = places.levels
+                if let Some([track, level, catch, mean]) = places.levels
                     && let Some(track) = row[track].as_u64()
+                    && row[catch] != Value::Bool(true)
                 {
                     let (name, number) = match row[mean].as_f64() {
                         Some(mean) => (threshold_of(response), Some(mean)),
