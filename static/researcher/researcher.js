@@ -8,7 +8,8 @@ function localTimes(root) {
   for (const element of root.querySelectorAll("time[datetime]")) {
     const at = new Date(element.dateTime);
     if (!Number.isNaN(at.getTime())) {
-      element.textContent = at.toLocaleString(document.documentElement.lang, { dateStyle: "short", timeStyle: "medium" });
+      const style = element.dataset.day === undefined ? { dateStyle: "short", timeStyle: "medium" } : { dateStyle: "medium" };
+      element.textContent = at.toLocaleString(document.documentElement.lang, style);
       element.title = element.dateTime;
     }
   }

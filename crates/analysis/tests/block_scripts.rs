@@ -40,7 +40,7 @@ fn cases() -> Vec<Case> {
         change(&mut file);
         Study::from_value(&file).unwrap()
     };
-    // Two blocks, one of them with levels that fall from the hardest to the easiest.
+    // Three blocks, two of them with levels that fall from the hardest to the easiest.
     let adaptive = of(adaptive, |file| {
         let mut block = file["components"]["limit"].clone();
         // Intervals, which are not looked at here, run the rule a thousand times: a staircase is soon run.
@@ -51,8 +51,18 @@ fn cases() -> Vec<Case> {
         block["rule"]["questPlus"] = json!({
             "function": "logistic", "threshold": [2.5, 11.5, 10], "spread": [2.0],
         });
+        // The third one asks for yes or no.
+        let option = |value| json!({ "value": value, "label": { "en": value, "fr": value } });
+        let options = ["yes", "no"].map(option);
+        let mut yes_or_no = block.clone();
         file["components"]["falling"] = block;
-        file["sequence"]["components"] = json!(["limit", "falling"]);
+        file["questions"].as_array_mut().unwrap().push(json!({
+            "id": "differ", "type": "singleChoice", "prompt": { "en": "Do they differ?", "fr": "Diffèrent-ils ?" },
+            "options": options,
+        }));
+        (yes_or_no["question"], yes_or_no["yes"]) = ("differ".into(), "yes".into());
+        file["components"]["differing"] = yes_or_no;
+        file["sequence"]["components"] = json!(["limit", "falling", "differing"]);
     });
     let scaling = of(scaling, |_| ());
     let faces = of(faces, |file| file["components"]["faces"]["trials"] = 60.into());
@@ -62,7 +72,12 @@ fn cases() -> Vec<Case> {
         Case {
             name: "adaptive",
             report: report(&adaptive, &discriminating(&adaptive), 2),
-            families: &["threshold:limit:p0001", "threshold:limit:mean", "threshold:falling:p0002"],
+            families: &[
+                "threshold:limit:p0001",
+                "threshold:limit:mean",
+                "threshold:falling:p0002",
+                "threshold:differing:p0001",
+            ],
         },
         Case {
             name: "scaling",

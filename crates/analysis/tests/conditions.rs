@@ -225,7 +225,7 @@ fn a_difference_between_conditions_is_found_again_in_a_simulated_export() {
     assert!(found["p"].as_f64().unwrap() < 0.01, "{}", found["p"]);
     let reading = found["reading"].as_str().unwrap();
     assert!(
-        reading.contains("The levels of assigned condition (at-once | rested) differ: U = "),
+        reading.contains("the levels of assigned condition (at-once | rested) differ: U = "),
         "{reading}"
     );
     // Parameters fitted to it have the difference again.

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use mimique_analysis::{Language, Parameters, Simulation, analyze};
 use mimique_stats::Table;
-use mimique_study::Study;
+use mimique_study::{Hypothesis, Study};
 use serde_json::json;
 use simulated::simulated_export;
 use support::{Raters, demo_study, export};
@@ -96,7 +96,76 @@ fn shows_no_difference_where_there_is_none_and_does_not_call_it_proof() {
     let report = report(&Raters { people: 20, effect: 0.0, seed: 11 }, Language::English);
     let reading = &report.readings[2].1;
     assert!(reading.contains("no difference between lsts and box was shown"), "{reading}");
-    assert!(reading.contains("no proof that there is none"), "{reading}");
+    assert!(report.files[0].text.contains("that is no proof that there is nothing"));
+}
+
+/// The decision is that of the corrected p, in the table and before everything else that is said; the p before the
+/// correction is said to be that.
+#[test]
+fn what_the_correction_takes_back_is_not_decided() {
+    let mut study = demo_study();
+    let asked = study.hypotheses[1].clone();
+    study.hypotheses =
+        (1..=4).map(|number| Hypothesis { id: format!("H{number}"), ..asked.clone() }).collect();
+    let (mut taken_back, mut kept) = (0, 0);
+    for seed in 1..40 {
+        let table = export(&study, &Raters { people: 16, effect: 0.25, seed });
+        let report =
+            analyze(&Table::parse(table.as_bytes()).unwrap(), &study, Language::English).unwrap();
+        let results = results(&report);
+        let hypothesis = &results["hypotheses"][0];
+        let [p, corrected] =
+            ["p", "p_holm_over_hypotheses"].map(|key| hypothesis[key].as_f64().unwrap());
+        let words =
+            if corrected < 0.05 { "a difference was shown" } else { "no difference was shown" };
+        let reading = &report.readings[0].1;
+        let first = format!("Corrected for the 4 hypotheses of this study: {words}, p");
+        assert!(reading.starts_with(&first), "{p} {corrected} {reading}");
+        assert!(reading.contains("Before that correction:"), "{reading}");
+        let table = report.files.iter().find(|file| file.path == "tables/hypotheses.csv").unwrap();
+        let row = table.text.lines().nth(1).unwrap();
+        assert!(row.contains(words), "{corrected} {row}");
+        assert!(table.text.starts_with("hypothesis,decision,"));
+        taken_back += usize::from(p < 0.05 && corrected >= 0.05);
+        kept += usize::from(corrected < 0.05);
+    }
+    assert!(taken_back > 0 && kept > 0, "{taken_back} {kept}");
+}
+
+/// The first screen: who took part, and a row per hypothesis with its interval drawn.
+#[test]
+fn the_first_screen_has_a_row_per_hypothesis() {
+    for (language, people) in [
+        (Language::English, "13 people in the analysis"),
+        (Language::French, "13 personnes dans l’analyse"),
+    ] {
+        let report = report(&Raters { people: 14, effect: 1.0, seed: 3 }, language);
+        let page = &report.files[0].text;
+        let first =
+            &page[..page.find("id=\"s3\"").or_else(|| page.find("class=\"figures\"")).unwrap()];
+        assert!(first.contains(people));
+        let study = demo_study();
+        assert_eq!(first.matches("<th scope=\"row\">").count(), study.hypotheses.len());
+        assert!(first.matches("class=\"forest\"").count() >= 3);
+        // What is computed stands behind headings; nothing of it is lost from the files.
+        assert!(page.contains("<details class=\"folded\">"));
+        assert!(report.files.iter().any(|file| file.path == "tables/hypothesis-h2.csv"));
+    }
+}
+
+/// Two paragraphs for a paper, with the numbers of the tables.
+#[test]
+fn words_for_a_paper_have_the_numbers_of_the_tables() {
+    let report = report(&Raters { people: 28, effect: 1.0, seed: 7 }, Language::English);
+    let results = results(&report);
+    let difference = &results["hypotheses"][1]["recommended"]["pairs"][0]["difference"];
+    let [estimate, low, high] =
+        ["estimate", "ci_low", "ci_high"].map(|key| difference[key].as_f64().unwrap());
+    let page = &report.files.iter().find(|file| file.path == "report.md").unwrap().text;
+    let words = format!("= {estimate:.2}, 95% CI \\[{low:.2}, {high:.2}\\]");
+    assert!(page.contains(&words), "{words}");
+    assert!(page.contains("(H2): a difference was shown, Wilcoxon’s signed rank test, W+ = "));
+    assert!(page.contains("n = 27, p \\< .001, r = "));
 }
 
 #[test]
@@ -467,7 +536,7 @@ fn straight_lining_is_left_out_by_the_study_s_rule() {
     let flow = &results(&report)["flow"];
     assert_eq!(flow["people_left_out"]["straight-lining"], 1, "{flow}");
     assert!(flow["rules"].to_string().contains("straightLining.longestRun > 8"), "{flow}");
-    assert!(report.files[0].text.contains("réponses toujours identiques: 1"));
+    assert!(report.files[0].text.contains("réponses toujours identiques\u{a0}: 1"));
     let before = analyze(&table, &demo_study(), Language::French).unwrap();
     assert_eq!(report.people.0 + 1, before.people.0);
 }

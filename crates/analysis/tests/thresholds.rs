@@ -49,6 +49,54 @@ fn planted_thresholds_are_found_again() {
     }
 }
 
+/// The block asks whether the clips differ.
+fn yes_or_no() -> Study {
+    let file = include_str!("../../../study-config/jnd-alpha.json");
+    let mut value = mimique_study::parse(file).unwrap();
+    value["questions"] = serde_json::json!([{
+        "id": "differ", "type": "singleChoice",
+        "prompt": { "en": "Do the two faces differ?", "fr": "Les deux visages diffèrent-ils ?" },
+        "options": [
+            { "value": "yes", "label": { "en": "Yes", "fr": "Oui" } },
+            { "value": "no", "label": { "en": "No", "fr": "Non" } },
+        ],
+    }]);
+    let block = &mut value["components"]["limit"];
+    (block["question"], block["yes"], block["catch"]) = ("differ".into(), "yes".into(), 0.5.into());
+    Study::from_value(&value).unwrap()
+}
+
+#[test]
+fn planted_thresholds_are_found_again_where_people_say_yes_or_no() {
+    let study = yes_or_no();
+    let (found, results) = report(&study, &export(&study, 0.4), Language::English);
+    let block = &results["thresholds"][0];
+    assert_eq!(block["yes_no"], true);
+    for person in block["people"].as_array().unwrap() {
+        assert_eq!((&person["answers"], &person["fit"]["guess"]), (&30.into(), &0.0.into()));
+        // Nobody says yes without a difference: all 15 catch trials are right.
+        assert_eq!(person["catches"], serde_json::json!([15, 15]));
+    }
+    let mean = block["mean"]["mean"].as_f64().unwrap();
+    assert!((mean - 0.4).abs() < 0.04, "{mean}");
+    assert!(text(&found, "report.md").contains("In 0 of 120 catch trials"));
+    assert_eq!(results["choices"], serde_json::json!([]));
+
+    // Who says yes without seeing anything is found by the catch trials, and has a lower threshold.
+    let mut parameters = careful(&study);
+    let own = parameters.discrimination.get_mut("limit").unwrap();
+    (own.threshold, own.person_sd, own.spread, own.false_alarm) = (0.4, 0.0, 0.08, 0.3);
+    let simulation = Simulation::new(&study, "hash", &parameters, 5).unwrap();
+    let csv = simulated_export(&simulation, &study, PEOPLE);
+    let (_, results) = report(&study, &csv, Language::French);
+    let people = results["thresholds"][0]["people"].as_array().unwrap();
+    let right: u64 = people.iter().map(|own| own["catches"][1].as_u64().unwrap()).sum();
+    let share = 1.0 - right as f64 / 120.0;
+    assert!((share - 0.3).abs() < 0.15, "{share} of catch trials are answered yes");
+    let low = results["thresholds"][0]["mean"]["mean"].as_f64().unwrap();
+    assert!(low < mean - 0.03, "{low} and {mean}");
+}
+
 #[test]
 fn a_threshold_above_the_levels_is_told_and_in_no_mean() {
     let study = study();

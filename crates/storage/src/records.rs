@@ -171,6 +171,8 @@ pub struct SessionState {
     pub standing: Standing,
     /// Whether its answers are gone.
     pub is_deleted: bool,
+    /// When it got its receipt, or its answers were deleted; milliseconds since 1970.
+    pub ended_ms: Option<i64>,
     /// When the next sign of life is due at the latest, milliseconds since 1970.
     pub sign_of_life_due_ms: i64,
     /// What its sums are to be made of.

@@ -14,9 +14,6 @@ use crate::study_file::{
     AdaptiveComponent, PsychometricFunction, QuestPlusRule, StaircaseRule, Varied,
 };
 
-/// Share of right answers by chance: one of two clips.
-const GUESS: f64 = 0.5;
-
 /// A block has no levels.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoLevels {
@@ -76,7 +73,8 @@ pub struct ClosedLoop {
 }
 
 /// The grid of QUEST+ of a block, its levels and thresholds by [`Varied::ease`].
-pub fn grid(rule: &QuestPlusRule, vary: &Varied) -> Grid {
+pub fn grid(rule: &QuestPlusRule, block: &AdaptiveComponent) -> Grid {
+    let vary = &block.vary;
     let [low, high, count] = rule.threshold;
     let count = count.clamp(0.0, 1e5) as u32;
     let threshold = Varied { parameter: String::new(), from: low, to: high, levels: count };
@@ -90,7 +88,7 @@ pub fn grid(rule: &QuestPlusRule, vary: &Varied) -> Grid {
     Grid {
         shape,
         levels: vary.all().iter().map(|level| vary.ease(*level)).collect(),
-        values: [thresholds, rule.spread.clone(), vec![GUESS], rule.lapse.clone()],
+        values: [thresholds, rule.spread.clone(), vec![block.guess()], rule.lapse.clone()],
         prior: [const { None }; 4],
     }
 }
@@ -120,7 +118,7 @@ impl ClosedLoop {
             return Err(NoLevels::NothingShown);
         }
         let rule = match (&block.rule.quest_plus, &block.rule.staircase) {
-            (Some(rule), None) => Rule::QuestPlus(QuestPlus::new(grid(rule, &block.vary))?),
+            (Some(rule), None) => Rule::QuestPlus(QuestPlus::new(grid(rule, &block))?),
             (None, Some(rule)) => Rule::Staircase(Staircase::new(staircase(rule, &block.vary))?),
             _ => return Err(NoLevels::Rule),
         };
@@ -138,7 +136,7 @@ impl ClosedLoop {
         let next = self.tracks[planned.track].next()?;
         let shown = &self.block.shown[planned.segment];
         let (level, entropy) = match planned.catch {
-            true => (self.block.vary.to, None),
+            true => (self.block.catch_level(), None),
             // A level of a staircase is one of the list, whatever its sums round to.
             false => (self.nearest(self.block.vary.ease(next.level)), next.entropy),
         };
@@ -164,25 +162,30 @@ impl ClosedLoop {
         left.into_iter().find(|&at| self.tracks[self.planned[at].track].next().is_some())
     }
 
-    /// Takes in the side that was chosen as the varied clip's (`left`, `right`). Another answer moves no track.
-    pub fn answer(&mut self, side: Option<&str>) {
+    /// Whether an answer to the next trial says that the difference is seen.
+    pub fn seen(&self, answer: &str) -> Option<bool> {
+        self.block.seen(answer, self.planned[self.upcoming()?].left)
+    }
+
+    /// Takes in the answer to the next trial: the side of the varied clip (`left`, `right`), or whether the clips
+    /// differ. Another answer moves no track.
+    pub fn answer(&mut self, answer: Option<&str>) {
+        self.take(answer.and_then(|answer| self.seen(answer)));
+    }
+
+    fn take(&mut self, seen: Option<bool>) {
         let Some(at) = self.upcoming() else { return };
-        let Planned { track, catch, left, .. } = self.planned[at];
+        let Planned { track, catch, .. } = self.planned[at];
         self.at = at + 1;
-        let chose_left = match side {
-            Some("left") => true,
-            Some("right") => false,
-            _ => return,
-        };
-        if !catch {
-            self.tracks[track].answer(chose_left != left);
+        if let Some(seen) = seen.filter(|_| !catch) {
+            self.tracks[track].answer(seen);
         }
     }
 
-    /// The block as it would be after an answer.
-    pub fn after(&self, side: &str) -> Self {
+    /// The block as it would be after an answer that says whether the difference is seen.
+    pub fn after(&self, seen: bool) -> Self {
         let mut after = self.clone();
-        after.answer(Some(side));
+        after.take(Some(seen));
         after
     }
 

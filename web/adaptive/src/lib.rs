@@ -3,7 +3,7 @@
 //!
 //! ```js
 //! const levels = new Levels(JSON.stringify(request)); // what the session's effect ChooseLevel holds
-//! levels.answer("left");                              // one answer after the other; undefined where there was none
+//! levels.answer("left"); // or "yes": one answer after the other; undefined where there was none
 //! JSON.parse(levels.next("limit/2"));                 // {type: "level_chosen", ...}
 //! levels.ahead();                                     // ["joy3.lsts@alpha=0.4", ...], either of which may come next
 //! ```
@@ -57,13 +57,10 @@ struct Request {
 #[derive(Debug)]
 pub struct Levels {
     closed_loop: ClosedLoop,
-    /// The block after `left` and after `right`, once they were looked at: the next level is known when it is asked
-    /// for.
+    /// The block after the difference was not seen and after it was, once they were looked at: the next level is known
+    /// when it is asked for.
     after: Option<[ClosedLoop; 2]>,
 }
-
-/// The answers.
-const SIDES: [&str; 2] = ["left", "right"];
 
 #[wasm_bindgen]
 impl Levels {
@@ -78,12 +75,14 @@ impl Levels {
         Ok(Self { closed_loop: ClosedLoop::new(block, &component, draw)?, after: None })
     }
 
-    /// Takes in the answer of the next trial: `left`, `right`, or nothing.
-    pub fn answer(&mut self, side: Option<String>) {
-        let place = SIDES.iter().position(|own| side.as_deref() == Some(own));
-        match (place, self.after.take()) {
-            (Some(place), Some(after)) => self.closed_loop = after[place].clone(),
-            _ => self.closed_loop.answer(side.as_deref()),
+    /// Takes in the answer of the next trial: `left`, `right`, an option of a yes-no question, or nothing.
+    pub fn answer(&mut self, answer: Option<String>) {
+        let seen = answer.as_deref().and_then(|answer| self.closed_loop.seen(answer));
+        match (seen, self.after.take()) {
+            (Some(seen), Some([not_seen, is_seen])) => {
+                self.closed_loop = if seen { is_seen } else { not_seen };
+            }
+            _ => self.closed_loop.answer(answer.as_deref()),
         }
     }
 
@@ -101,7 +100,8 @@ impl Levels {
     /// The clips that may come after either answer; the level that comes then is known when it is asked for.
     pub fn ahead(&mut self) -> Vec<String> {
         let closed_loop = &self.closed_loop;
-        let after = self.after.get_or_insert_with(|| SIDES.map(|side| closed_loop.after(side)));
+        let after =
+            self.after.get_or_insert_with(|| [false, true].map(|seen| closed_loop.after(seen)));
         after.iter().flat_map(ClosedLoop::clips).collect()
     }
 }

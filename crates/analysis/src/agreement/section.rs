@@ -37,7 +37,7 @@ impl Writer<'_> {
             self.blocks.push(Block::Reading(reading));
             if let Some(Outcome::Ok(icc)) = &own.icc {
                 let table = self.icc_table(label, &own.response, icc);
-                self.blocks.push(Block::Table(table));
+                self.folded_table(table);
             }
         }
         self.results.agreement.extend(found.into_iter().map(|(_, own)| own));

@@ -4,6 +4,7 @@ pub(crate) mod call;
 mod choices;
 pub(crate) mod comparison;
 pub(crate) mod conditions;
+pub(crate) mod decision;
 pub(crate) mod equivalence;
 pub(crate) mod not_tested;
 pub(crate) mod other_clips;
@@ -379,9 +380,14 @@ fn between_people(
 /// The p that a hypothesis stands or falls by: the interaction if there is one, the overall test of
 /// several levels, or the one pair.
 fn deciding_p(people: &PersonLevel) -> Option<f64> {
+    deciding_test(people)?.p_that_counts()
+}
+
+/// The test that has it.
+pub(crate) fn deciding_test(people: &PersonLevel) -> Option<&TestOutcome> {
     match (people.overall.last(), people.pairs.as_slice()) {
-        (Some(last), _) => last.p_that_counts(),
-        (None, [one]) => one.wilcoxon.p(),
+        (Some(last), _) => Some(last),
+        (None, [one]) => Some(&one.wilcoxon),
         (None, _) => None,
     }
 }

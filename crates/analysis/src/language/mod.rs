@@ -68,19 +68,26 @@ impl Language {
 
     /// `p = 0.012`, or `p < 0.001`.
     pub(crate) fn p(self, p: f64) -> String {
+        match p < 0.001 {
+            true => format!("p {}", self.p_rounded(p)),
+            false => format!("p = {}", self.p_rounded(p)),
+        }
+    }
+
+    /// `0.012`, or `< 0.001`.
+    pub(crate) fn p_rounded(self, p: f64) -> String {
         if p < 0.001 {
-            return format!("p < {}", self.mark("0.001".to_owned()));
+            return format!("< {}", self.mark("0.001".to_owned()));
         }
         // Rounding must not carry a p over the border.
         let decimals = if (0.0495..0.0505).contains(&p) { 4 } else { 3 };
-        format!("p = {}", self.fixed(p, decimals))
+        self.fixed(p, decimals)
     }
 
     /// A p-value in a table: three decimals, or its order of magnitude.
     pub(crate) fn p_cell(self, p: f64, ln_p: f64) -> String {
         if p >= 0.001 {
-            let decimals = if (0.0495..0.0505).contains(&p) { 4 } else { 3 };
-            return self.fixed(p, decimals);
+            return self.p_rounded(p);
         }
         if p > 1e-300 {
             return self.mark(format!("{p:.1e}"));

@@ -12,9 +12,31 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language) {
         let (parameter, levels) = (&vary.parameter, vary.levels);
         let [from, to] = [vary.from, vary.to].map(|level| language.number(level));
         let (rule, catches) = (rule(&block, language), block.catches());
+        let [asked, catch] = match block.yes {
+            None => language.pick(
+                [
+                    "the participant says which of the two clips is the varied one (guessing: one half)",
+                    "at the easiest level",
+                ],
+                [
+                    "le participant dit lequel des deux extraits est modifié (hasard : un sur deux)",
+                    "au niveau le plus facile",
+                ],
+            ),
+            Some(_) => language.pick(
+                [
+                    "the participant says whether the two clips differ (yes or no; guessing: none)",
+                    "at the hardest level, which show how often people say yes without a difference",
+                ],
+                [
+                    "le participant dit si les deux extraits diffèrent (oui ou non ; hasard : aucun)",
+                    "au niveau le plus difficile, qui montrent combien de fois on dit oui sans différence",
+                ],
+            ),
+        };
         text.line(&language.pick(
-            format!("Adaptive block `{name}`: {parameter} of {method} takes one of {levels} levels from {from} to {to}, beside {against}, and the participant says which of the two clips is the varied one (guessing: one half). {tracks} tracks of {trials} trials at most, mixed, {rule}; {catches} catch trials at the easiest level, which no track counts. Levels are solved in the browser; the weights are held against those that were solved beforehand, and every level is chosen anew from seed and answers in the export (`level_replayed`, `weights_expected`)."),
-            format!("Bloc adaptatif `{name}` : {parameter} de {method} prend l’un de {levels} niveaux de {from} à {to}, à côté de {against}, et le participant dit lequel des deux extraits est modifié (hasard : un sur deux). {tracks} suites de {trials} essais au plus, mêlées, {rule} ; {catches} essais pièges au niveau le plus facile, qu’aucune suite ne compte. Les niveaux sont résolus dans le navigateur ; leurs poids sont comparés à ceux résolus d’avance, et chaque niveau est choisi à nouveau d’après la graine et les réponses dans l’export (`level_replayed`, `weights_expected`)."),
+            format!("Adaptive block `{name}`: {parameter} of {method} takes one of {levels} levels from {from} to {to}, beside {against}, and {asked}. {tracks} tracks of {trials} trials at most, mixed, {rule}; {catches} catch trials {catch}; no track counts them. Levels are solved in the browser; the weights are held against those that were solved beforehand, and every level is chosen anew from seed and answers in the export (`level_replayed`, `weights_expected`)."),
+            format!("Bloc adaptatif `{name}` : {parameter} de {method} prend l’un de {levels} niveaux de {from} à {to}, à côté de {against}, et {asked}. {tracks} suites de {trials} essais au plus, mêlées, {rule} ; {catches} essais pièges {catch} ; aucune suite ne les compte. Les niveaux sont résolus dans le navigateur ; leurs poids sont comparés à ceux résolus d’avance, et chaque niveau est choisi à nouveau d’après la graine et les réponses dans l’export (`level_replayed`, `weights_expected`)."),
         ));
         text.line("");
     }

@@ -26,6 +26,25 @@ pub enum Block {
     Table(DataTable),
     /// A drawing.
     Figure(Figure),
+    /// What every hypothesis found, a row each.
+    Decisions(DecisionTable),
+    /// What stands behind a heading, to be opened: tables, and figures that go with them. Print leaves it out.
+    Folded(String, Vec<Block>),
+    /// Words to be copied into a paper.
+    Paper(String),
+}
+
+/// What every hypothesis found.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DecisionTable {
+    /// A row per hypothesis: its words, the decision, effects with their intervals, p, people.
+    pub data: DataTable,
+    /// The effects of each row, a line each.
+    pub effects: Vec<Vec<String>>,
+    /// The intervals of each row, drawn; none where there are none. Lines stand as those of the effects.
+    pub drawings: Vec<Option<String>>,
+    /// How the intervals are drawn.
+    pub scale: String,
 }
 
 /// A table of text cells; `id` names its file.

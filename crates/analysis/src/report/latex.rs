@@ -125,6 +125,12 @@ pub(crate) fn escape(text: &str) -> String {
             '”' => escaped.push_str("''"),
             '≤' => escaped.push_str("$\\leq$"),
             '…' => escaped.push_str("\\ldots{}"),
+            '→' => escaped.push_str("$\\rightarrow$"),
+            '±' => escaped.push_str("$\\pm$"),
+            '●' => escaped.push_str("$\\bullet$"),
+            '○' => escaped.push_str("$\\circ$"),
+            '◐' => escaped.push_str("$\\odot$"),
+            '■' => escaped.push_str("\\rule{1ex}{1ex}"),
             c => escaped.push(c),
         }
     }

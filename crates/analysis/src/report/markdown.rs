@@ -6,7 +6,12 @@ use crate::report::document::{Block, DataTable, Document};
 
 pub(crate) fn markdown(document: &Document) -> String {
     let mut text = format!("# {}\n\n{}\n", plain(&document.title), plain(&document.subtitle));
-    for block in &document.blocks {
+    blocks(&mut text, &document.blocks);
+    text
+}
+
+fn blocks(text: &mut String, blocks: &[Block]) {
+    for block in blocks {
         text.push('\n');
         let _ = match block {
             Block::Heading(level, heading) => {
@@ -15,8 +20,18 @@ pub(crate) fn markdown(document: &Document) -> String {
             Block::Paragraph(words) => writeln!(text, "{}", plain(words)),
             Block::Reading(words) => writeln!(text, "**{}**", plain(words)),
             Block::Caution(words) => writeln!(text, "> {}", plain(words)),
+            Block::Paper(words) => writeln!(text, "{}", plain(words)),
             Block::Table(data) => {
-                table(&mut text, data);
+                table(text, data);
+                Ok(())
+            }
+            Block::Decisions(decisions) => {
+                table(text, &decisions.data);
+                Ok(())
+            }
+            Block::Folded(heading, own) => {
+                let _ = writeln!(text, "#### {}", plain(heading));
+                self::blocks(text, own);
                 Ok(())
             }
             Block::Figure(figure) => writeln!(
@@ -28,7 +43,6 @@ pub(crate) fn markdown(document: &Document) -> String {
             ),
         };
     }
-    text
 }
 
 fn table(text: &mut String, data: &DataTable) {

@@ -21,7 +21,7 @@ use crate::language::Language;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use crate::trials::stimulus_measures::StimulusMeasures;
-use document::{Block, Document};
+use document::{Block, DataTable, Document};
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub fn document_files(document: &Document, language: Language) -> Vec<ReportFile
         ReportFile { path: "report.md".to_owned(), text: markdown::markdown(document) },
     ];
     files.extend(document.blocks.iter().flat_map(block_files));
-    let tables: Vec<&str> = document.blocks.iter().filter_map(table_id).collect();
+    let tables: Vec<&str> = document.blocks.iter().flat_map(table_ids).collect();
     files.push(ReportFile {
         path: "tables/all.tex".to_owned(),
         text: latex::document(&document.title, &tables),
@@ -97,22 +97,30 @@ pub fn document_files(document: &Document, language: Language) -> Vec<ReportFile
 fn block_files(block: &Block) -> Vec<ReportFile> {
     let file = |path, text| ReportFile { path, text };
     match block {
-        Block::Table(data) => vec![
-            file(format!("tables/{}.csv", data.id), data.to_csv()),
-            file(format!("tables/{}.tex", data.id), latex::table(data)),
-        ],
+        Block::Table(data) => table_files(data),
         Block::Figure(figure) => vec![
             file(format!("figures/{}.svg", figure.id), figure.svg.clone()),
             file(format!("tables/figure-{}.csv", figure.data.id), figure.data.to_csv()),
             file(format!("tables/figure-{}.tex", figure.data.id), latex::table(&figure.data)),
         ],
+        Block::Decisions(decisions) => table_files(&decisions.data),
+        Block::Folded(_, blocks) => blocks.iter().flat_map(block_files).collect(),
         _ => Vec::new(),
     }
 }
 
-fn table_id(block: &Block) -> Option<&str> {
+fn table_files(data: &DataTable) -> Vec<ReportFile> {
+    vec![
+        ReportFile { path: format!("tables/{}.csv", data.id), text: data.to_csv() },
+        ReportFile { path: format!("tables/{}.tex", data.id), text: latex::table(data) },
+    ]
+}
+
+fn table_ids(block: &Block) -> Vec<&str> {
     match block {
-        Block::Table(data) => Some(&data.id),
-        _ => None,
+        Block::Table(data) => vec![&data.id],
+        Block::Decisions(decisions) => vec![&decisions.data.id],
+        Block::Folded(_, blocks) => blocks.iter().flat_map(table_ids).collect(),
+        _ => Vec::new(),
     }
 }

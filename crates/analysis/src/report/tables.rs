@@ -14,36 +14,32 @@ use crate::language::naming::Naming;
 use crate::report::document::DataTable;
 use crate::trials::measure::MeasureKind;
 
-/// Cells of one test: what was computed, p, effect.
-pub(crate) fn cells(language: Language, outcome: &TestOutcome, holm: bool) -> [String; 3] {
+/// Cells of one test: what was computed, p without correction, effect.
+pub(crate) fn cells(language: Language, outcome: &TestOutcome) -> [String; 3] {
     match outcome {
         Outcome::Undefined { reason } => [
             format!("{}{}", language.pick("undefined: ", "non défini : "), reason.words(language)),
             String::new(),
             String::new(),
         ],
-        Outcome::Ok(line) => {
-            let (p, ln_p) = match line.p_holm {
-                Some(p) if holm => (p, p.ln()),
-                _ => (line.row.p_value, line.row.ln_p),
-            };
-            [
-                format!(
-                    "{} {}{} = {}, n = {}",
-                    line.names.short,
-                    line.names.statistic_symbol,
-                    line.degrees_in_brackets(),
-                    language.number(line.row.statistic),
-                    line.row.n
-                )
-                .trim_start()
-                .to_owned(),
-                language.p_cell(p, ln_p),
-                line.row.effect.map_or_else(String::new, |effect| {
-                    format!("{} = {}", line.names.effect_symbol, language.fixed(effect, 2))
-                }),
-            ]
-        }
+        Outcome::Ok(line) => [
+            format!(
+                "{} {}{} = {}, n = {}",
+                Some(line.names.short)
+                    .filter(|short| *short != line.names.statistic_symbol)
+                    .unwrap_or_default(),
+                line.names.statistic_symbol,
+                line.degrees_in_brackets(),
+                language.number(line.row.statistic),
+                line.row.n
+            )
+            .trim_start()
+            .to_owned(),
+            language.p_cell(line.row.p_value, line.row.ln_p),
+            line.row.effect.map_or_else(String::new, |effect| {
+                format!("{} = {}", line.names.effect_symbol, language.fixed(effect, 2))
+            }),
+        ],
     }
 }
 
@@ -92,8 +88,8 @@ pub(crate) fn two_columns(
 ) -> DataTable {
     let language = naming.language;
     let heading = language.pick(
-        ["", "test", "p", "effect", "test", "p (Holm)", "effect"],
-        ["", "test", "p", "effet", "test", "p (Holm)", "effet"],
+        ["", "test", "p", "effect", "test", "p", "p (Holm)", "effect"],
+        ["", "test", "p", "effet", "test", "p", "p (Holm)", "effet"],
     );
     let last = difference_heading(language, kind);
     let mut table =
@@ -101,7 +97,7 @@ pub(crate) fn two_columns(
     table.groups = vec![
         (String::new(), 1),
         (thesis_heading(language).to_owned(), 3),
-        (recommended_heading(language).to_owned(), 4),
+        (recommended_heading(language).to_owned(), 5),
     ];
     let recommended = recommended_lines(naming, factor, kind, people, PAIRS_BESIDE);
     // With two levels the paired test of trials stands beside the pair.
@@ -117,20 +113,39 @@ pub(crate) fn two_columns(
         };
         let mut row = vec![label];
         match of_trials.get(place) {
-            Some(outcome) => row.extend(cells(language, outcome, false)),
+            Some(outcome) => row.extend(cells(language, outcome)),
             None => row.extend([String::new(), String::new(), String::new()]),
         }
         match recommended.get(place) {
             Some((_, outcome, difference)) => {
-                row.extend(cells(language, outcome, true));
-                row.push(difference.clone());
+                let [test, p, effect] = cells(language, outcome);
+                // A pair alone is corrected for nothing.
+                let corrected = match people.pairs.len() {
+                    1 => String::new(),
+                    _ => corrected_cell(language, outcome),
+                };
+                row.extend([test, p, corrected, effect, difference.clone()]);
             }
-            None => row.extend(["", "", "", ""].map(str::to_owned)),
+            None => row.extend([const { String::new() }; 5]),
         }
         table.row(row);
     }
-    drop_empty_differences(&mut table);
+    // Interactions and many levels have no differences to show, and one test alone is not corrected.
+    drop_if_empty(&mut table, DIFFERENCE);
+    drop_if_empty(&mut table, CORRECTED);
     table
+}
+
+/// Columns of the table of both kinds of test, as it is built.
+const CORRECTED: usize = 6;
+const DIFFERENCE: usize = 8;
+
+/// p after Holm's correction over several tests, where there was one.
+pub(crate) fn corrected_cell(language: Language, outcome: &TestOutcome) -> String {
+    match outcome {
+        Outcome::Ok(line) => line.p_holm.map_or_else(String::new, |p| language.p_cell(p, p.ln())),
+        Outcome::Undefined { .. } => String::new(),
+    }
 }
 
 /// Over tests of choices between two clips, which do not take one value per person.
@@ -171,11 +186,11 @@ pub(crate) fn recommended_lines<'p>(
     overall.chain(pairs).collect()
 }
 
-/// Interactions and many levels have no differences to show.
-fn drop_empty_differences(table: &mut DataTable) {
-    if table.rows.iter().all(|row| row.last().is_some_and(String::is_empty)) {
-        table.columns.pop();
-        table.rows.iter_mut().for_each(|row| drop(row.pop()));
+/// Takes a column of recommended tests off that has nothing in it.
+fn drop_if_empty(table: &mut DataTable, column: usize) {
+    if table.rows.iter().all(|row| row[column].is_empty()) {
+        table.columns.remove(column);
+        table.rows.iter_mut().for_each(|row| drop(row.remove(column)));
         table.groups[2].1 -= 1;
     }
 }
@@ -190,8 +205,8 @@ pub(crate) fn other_clips(
 ) -> DataTable {
     let language = naming.language;
     let heading = language.pick(
-        ["Other clips too", "test", "p", "effect [95 %]", "higher of two"],
-        ["D’autres extraits aussi", "test", "p", "effet [95 %]", "plus haute de deux"],
+        ["Other clips too", "test", "p", "effect [95 %]", "first is higher of two"],
+        ["D’autres extraits aussi", "test", "p", "effet [95 %]", "la première plus haute de deux"],
     );
     let mut table = DataTable::new(id, caption, heading);
     let whole = naming.factor(factor);
@@ -210,15 +225,16 @@ pub(crate) fn other_clips(
             let p = language.p_cell(model.p, model.ln_p);
             table.row([whole.clone(), test, p, String::new(), String::new()]);
             for pair in &model.pairs {
-                let [odds, low, high] = [pair.odds_ratio, pair.interval_95[0], pair.interval_95[1]]
-                    .map(|value| language.fixed(value, 2));
+                // The model's odds are those at the second level; pairs are told as elsewhere, the first level first.
+                let [low, high] = pair.interval_95;
+                let [odds, low, high] =
+                    [pair.odds_ratio, high, low].map(|value| language.fixed(1.0 / value, 2));
                 table.row([
-                    // The odds are those at the second level.
-                    naming.pair(factor, &pair.b, &pair.a),
+                    naming.pair(factor, &pair.a, &pair.b),
                     format!("{name}, Holm"),
                     language.p_cell(pair.p_corrected, pair.p_corrected.ln()),
                     format!("{} = {odds} [{low}; {high}]", names.effect_symbol),
-                    language.percent(pair.higher),
+                    language.percent(1.0 - pair.higher),
                 ]);
             }
         }
@@ -228,7 +244,7 @@ pub(crate) fn other_clips(
             table.row([whole.clone(), test, String::new(), String::new(), String::new()]);
         }
     }
-    let [test, p, effect] = cells(language, &found.min_f, false);
+    let [test, p, effect] = cells(language, &found.min_f);
     table.row([whole, test, p, effect, String::new()]);
     table
 }
@@ -257,7 +273,8 @@ pub(crate) fn many_pairs(
     let columns = columns.into_iter().chain(heading.map(str::to_owned));
     let mut table = DataTable::new(id, caption, columns);
     for pair in &people.pairs {
-        let [test, p, effect] = cells(language, &pair.wilcoxon, true);
+        let [test, _, effect] = cells(language, &pair.wilcoxon);
+        let p = corrected_cell(language, &pair.wilcoxon);
         let label = naming.pair(factor, &pair.a, &pair.b);
         table.row([label, difference(language, kind, pair), p, effect, test]);
     }

@@ -133,15 +133,17 @@ impl Walk<'_, '_> {
         self.read(500.0);
     }
 
-    /// Which of two clips is the varied one.
+    /// Which of two clips is the varied one, or whether they differ.
     fn answer_level(&mut self, shown: &LevelShown) {
         let here = self.page.state.record.step;
         let ms = self.person.answering_ms(None);
         self.page.wait(ms);
         let careless = self.person.is_careless();
-        let Some(side) = self.observer.answer(shown, careless) else { return };
         for question in self.page.plan.steps[here].questions() {
-            let value = side.into();
+            let options = question.kind.options().iter().map(|option| option.value.as_str());
+            let offered = options.chain(["left", "right"]);
+            let Some(answer) = self.observer.answer(shown, offered, careless) else { return };
+            let value = answer.into();
             self.page.send(Input::Answer { question: question.id.clone(), value });
         }
         self.read(500.0);

@@ -7,15 +7,12 @@ use std::collections::HashMap;
 use mimique_adaptive::{Psychometric, Shape};
 use mimique_session::LevelShown;
 use mimique_session::flow::Input;
-use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study, Varied, component_of};
+use mimique_study::{AdaptiveComponent, ClosedLoop, Draw, Study, component_of};
 use serde::Deserialize as _;
 use serde_json::{Value, json};
 
 use super::parameters::{Discrimination, Parameters};
 use super::random::Draws;
-
-/// Share of right answers by chance: one of two clips.
-const GUESS: f64 = 0.5;
 
 /// The thresholds of a study's adaptive blocks, if nothing else is said: in the middle of the levels.
 pub(super) fn defaults(study: &Study) -> std::collections::BTreeMap<String, Discrimination> {
@@ -26,6 +23,7 @@ pub(super) fn defaults(study: &Study) -> std::collections::BTreeMap<String, Disc
             person_sd: 0.12 * width,
             spread: 0.15 * width,
             lapse: 0.02,
+            false_alarm: 0.0,
         };
         (name.to_owned(), discrimination)
     };
@@ -83,7 +81,7 @@ pub(crate) fn threshold(given: &Discrimination, block: &str, seed: u64, number: 
 /// How one person tells the levels of each block.
 pub(super) struct Observer {
     /// The function of each block, of [`Varied::ease`].
-    functions: HashMap<String, (Varied, Psychometric)>,
+    functions: HashMap<String, (AdaptiveComponent, Psychometric)>,
     draws: Draws,
 }
 
@@ -97,21 +95,25 @@ impl Observer {
                 shape: Shape::Normal,
                 location: block.vary.ease(threshold),
                 spread: given.spread,
-                guess: GUESS,
+                guess: block.guess().max(given.false_alarm),
                 lapse: given.lapse,
             };
-            Some((name.to_owned(), (block.vary, function)))
+            Some((name.to_owned(), (block, function)))
         };
         let functions = study.adaptive().filter_map(of).collect();
         Self { functions, draws: Draws::new(seed, Some(number), "levels") }
     }
 
-    /// The side that is answered; none for a block that the parameters do not know.
-    pub(super) fn answer(&mut self, shown: &LevelShown, careless: bool) -> Option<&'static str> {
-        let (vary, function) = self.functions.get(component_of(&shown.step))?;
-        let right = if careless { GUESS } else { function.right(vary.ease(shown.level)) };
-        let is_right = self.draws.happens(right);
-        // The varied clip stands where the other one does not.
-        Some(if is_right == shown.left { "right" } else { "left" })
+    /// Which of the answers that a question offers is given; none for a block that the parameters do not know.
+    pub(super) fn answer<'q>(
+        &mut self,
+        shown: &LevelShown,
+        offered: impl IntoIterator<Item = &'q str>,
+        careless: bool,
+    ) -> Option<&'q str> {
+        let (block, function) = self.functions.get(component_of(&shown.step))?;
+        let share = if careless { 0.5 } else { function.right(block.vary.ease(shown.level)) };
+        let seen = self.draws.happens(share);
+        offered.into_iter().find(|answer| block.seen(answer, shown.left) == Some(seen))
     }
 }

@@ -175,7 +175,8 @@ pub struct PanelRatings {
     pub misses_reference: f64,
 }
 
-/// How people tell the levels of an adaptive block: P(right) = 1/2 + (1/2 - lapse) Φ((level - threshold) / spread).
+/// How people tell the levels of an adaptive block: P(right) = 1/2 + (1/2 - lapse) Φ((level - threshold) / spread), or
+/// P(yes) = false alarm + (1 - false alarm - lapse) Φ(...).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Discrimination {
@@ -187,6 +188,9 @@ pub struct Discrimination {
     pub spread: f64,
     /// Share of wrong answers where all is seen.
     pub lapse: f64,
+    /// Blocks of yes or no: share of yes where nothing is seen.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub false_alarm: f64,
 }
 
 /// A number that is typed: normal, kept within the question's bounds.

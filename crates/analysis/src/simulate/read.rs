@@ -103,6 +103,10 @@ impl Parameters {
                 let problem = format!("{} is no share of lapses", given.lapse);
                 return Err(problem_at(&at("lapse"), problem, "give 0 to 0.5"));
             }
+            if !(0.0..0.5).contains(&given.false_alarm) {
+                let problem = format!("{} is no share of false alarms", given.false_alarm);
+                return Err(problem_at(&at("falseAlarm"), problem, "give 0 to below 0.5"));
+            }
         }
         for (name, given) in &self.scaling {
             if let Some((key, problem, remedy)) = given.fault() {

@@ -13,8 +13,6 @@ use serde::Serialize;
 
 use crate::trials::export::{Answer, Export, ShownLevel};
 
-/// Share of right answers by chance: one of two clips.
-const GUESS: f64 = 0.5;
 /// Runs of the rule, with answers drawn from the fitted function, for an interval.
 pub(crate) const ROUNDS: usize = 1000;
 
@@ -30,6 +28,9 @@ pub(crate) struct BlockThresholds {
     pub parameter: String,
     /// Its lowest and highest level.
     pub levels: [f64; 2],
+    /// Whether people say yes or no: nobody is then right by chance, and catch trials show no difference.
+    #[serde(skip_serializing_if = "is_false")]
+    pub yes_no: bool,
     /// Whether levels fall from the hardest to the easiest: fitted functions are then of minus the level.
     #[serde(skip_serializing_if = "is_false")]
     pub falls: bool,
@@ -113,7 +114,8 @@ pub(crate) fn thresholds(export: &Export, study: &Study, rounds: usize) -> Vec<B
         let levels = ends(&block.vary);
         let falls = block.vary.from > block.vary.to;
         let question = block.question.clone();
-        BlockThresholds { block: name.to_owned(), question, parameter, levels, falls, people, mean }
+        let (block, yes_no) = (name.to_owned(), block.yes.is_some());
+        BlockThresholds { block, question, parameter, levels, yes_no, falls, people, mean }
     };
     let all = study.adaptive().map(of);
     all.filter(|block| !block.people.is_empty()).collect()
@@ -195,7 +197,7 @@ fn options(block: &AdaptiveComponent) -> PsychometricOptions {
         PsychometricFunction::Logistic => Shape::Logistic,
         PsychometricFunction::Weibull => Shape::Weibull,
     };
-    PsychometricOptions { shape, guess: GUESS, lapse: Lapse::Free }
+    PsychometricOptions { shape, guess: block.guess(), lapse: Lapse::Free }
 }
 
 /// Where a level lies, by [`Varied::ease`].
@@ -214,7 +216,7 @@ fn placed(ease: f64, block: &AdaptiveComponent) -> Threshold {
 /// before the hardest level, answers by chance everywhere behind the easiest, and a step between two of them.
 fn without_fit(counts: &[LevelCount], block: &AdaptiveComponent) -> Threshold {
     let share = |own: &LevelCount| own.correct as f64 / own.n as f64;
-    let half = 0.5 * (1.0 + GUESS);
+    let half = 0.5 * (1.0 + block.guess());
     let right = |own: &&LevelCount| share(own) > half;
     let all: (u64, u64) =
         counts.iter().fold((0, 0), |(n, right), own| (n + own.n, right + own.correct));

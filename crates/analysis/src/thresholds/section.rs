@@ -24,9 +24,20 @@ impl Writer<'_> {
             2,
             language.pick(format!("Threshold: {name}"), format!("Seuil : {name}")),
         ));
+        let half = if block.yes_no {
+            language.pick(
+                "half of the way from none to the best share of yes is reached: 50 % without lapses",
+                "est atteinte la moitié du chemin de zéro à la meilleure proportion de oui : 50 % sans inattention",
+            )
+        } else {
+            language.pick(
+                "half of the way from chance to the best share of right answers is reached: 75 % are right without lapses",
+                "est atteinte la moitié du chemin entre le hasard et la meilleure proportion de bonnes réponses : 75 % sans inattention",
+            )
+        };
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("The threshold is the level of {parameter} at which half of the way from chance to the best share of right answers is reached: 75 % are right without lapses. Each person's function is fitted by maximum likelihood, its lapse from 0 to 0.2 with the prior Beta(1, 10); the interval runs the rule that chose the levels 1000 times with answers of the fitted function. Slopes from levels that follow the answers are biased upwards, and no test of them stands here."),
-            format!("Le seuil est le niveau de {parameter} auquel est atteinte la moitié du chemin entre le hasard et la meilleure proportion de bonnes réponses : 75 % sans inattention. La fonction de chaque personne est ajustée par maximum de vraisemblance, l’inattention de 0 à 0,2 avec la loi a priori Bêta(1, 10) ; l’intervalle rejoue 1000 fois la règle qui choisit les niveaux, avec des réponses de la fonction ajustée. Les pentes tirées de niveaux qui suivent les réponses sont biaisées vers le haut ; aucun test n’en figure ici."),
+            format!("The threshold is the level of {parameter} at which {half}. Each person's function is fitted by maximum likelihood, its lapse from 0 to 0.2 with the prior Beta(1, 10); the interval runs the rule that chose the levels 1000 times with answers of the fitted function. Slopes from levels that follow the answers are biased upwards, and no test of them stands here."),
+            format!("Le seuil est le niveau de {parameter} auquel {half}. La fonction de chaque personne est ajustée par maximum de vraisemblance, l’inattention de 0 à 0,2 avec la loi a priori Bêta(1, 10) ; l’intervalle rejoue 1000 fois la règle qui choisit les niveaux, avec des réponses de la fonction ajustée. Les pentes tirées de niveaux qui suivent les réponses sont biaisées vers le haut ; aucun test n’en figure ici."),
         )));
         let summary = match mean.clone().ok() {
             Some(found) => {
@@ -61,11 +72,28 @@ impl Writer<'_> {
                 format!("Erreur : la graine et les réponses ne donnent pas les niveaux enregistrés pour {who}. Leurs seuils sont écartés ; voyez la colonne level_replayed."),
             )));
         }
+        if block.yes_no {
+            self.false_alarms(block);
+        }
         let table = self.threshold_table(block);
         self.blocks.push(Block::Table(table));
         for person in people.iter().take(MOST_DRAWN) {
             self.threshold_figure(block, person);
         }
+    }
+
+    /// How often people say yes without a difference, which moves their thresholds.
+    fn false_alarms(&mut self, block: &BlockThresholds) {
+        let language = self.language();
+        let sums = block.people.iter().fold([0, 0], |[all, right], own| {
+            let [own_all, own_right] = own.catches;
+            [all + own_all, right + own_right]
+        });
+        let [all, said_yes] = [sums[0], sums[0] - sums[1]];
+        self.blocks.push(Block::Paragraph(language.pick(
+            format!("In {said_yes} of {all} catch trials, which showed no difference, people said yes. A threshold of yes or no depends on what somebody sees and on how readily they say yes, and the fitted function takes nobody to say yes to nothing: who says it often in catch trials has a threshold that is too low. A question of which clip is the varied one is free of this."),
+            format!("À {said_yes} des {all} essais pièges, qui ne montraient aucune différence, la réponse était oui. Un seuil par oui ou non dépend de ce que l’on voit et de la facilité à dire oui, et la fonction ajustée suppose que personne ne dit oui à rien : qui le dit souvent aux essais pièges a un seuil trop bas. La question de savoir lequel des extraits est modifié en est exempte."),
+        )));
     }
 
     fn threshold_table(&self, block: &BlockThresholds) -> DataTable {
@@ -151,7 +179,11 @@ impl Writer<'_> {
             title: caption.clone(),
             level: block.parameter.clone(),
             trial: language.pick("trial", "essai"),
-            share: language.pick("share right", "proportion juste"),
+            share: if block.yes_no {
+                language.pick("share of yes", "proportion de oui")
+            } else {
+                language.pick("share right", "proportion juste")
+            },
         };
         let svg = curve_and_track(&words, &person.shown, person.fit.as_ref(), &own.vary);
         let columns = language.pick(["track", "level", "right"], ["suite", "niveau", "juste"]);
@@ -164,9 +196,17 @@ impl Writer<'_> {
                 u8::from(answer.right).to_string(),
             ]);
         }
+        let [filled, counted] = if block.yes_no {
+            language.pick(["the answer was yes", "yes"], ["la réponse était oui", "oui"])
+        } else {
+            language.pick(
+                ["the answer was right", "right answers"],
+                ["la réponse était juste", "bonnes réponses"],
+            )
+        };
         let alt = language.pick(
-            format!("Levels of {} trials in their order, filled where the answer was right, and the share of right answers by level with the fitted function.", person.shown.len()),
-            format!("Niveaux de {} essais dans leur ordre, pleins où la réponse était juste, et la proportion de bonnes réponses par niveau avec la fonction ajustée.", person.shown.len()),
+            format!("Levels of {} trials in their order, filled where {filled}, and the share of {counted} by level with the fitted function.", person.shown.len()),
+            format!("Niveaux de {} essais dans leur ordre, pleins où {filled}, et la proportion de {counted} par niveau avec la fonction ajustée.", person.shown.len()),
         );
         self.blocks.push(Block::Figure(Figure { id, caption, alt, svg, data }));
     }

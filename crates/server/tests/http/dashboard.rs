@@ -101,6 +101,43 @@ pub async fn thresholds_so_far_are_shown(server: &TestServer) {
     }
 }
 
+/// Both clips of a pair are shown, and both count in the balance; the page first says how many are done.
+pub async fn both_clips_of_a_pair_are_in_the_balance(server: &TestServer) {
+    let mut owner = owner(server).await;
+    let mut file = study::of("pairs");
+    file["recruitment"]["participants"] = 40.into();
+    let pairs = Study::from_value(&file).unwrap();
+    let mut parameters = Parameters::for_study(&pairs);
+    (parameters.dropout.declined, parameters.dropout.per_trial) = (0.0, 0.0);
+    let hash = mimique_study::config_hash(&file);
+    let simulation = Simulation::new(&pairs, &hash, &parameters, 1).unwrap();
+    let server = server.restart_with(vec![study::host(file)]).await;
+    for number in 1..=2 {
+        let session = simulation.session(number).unwrap();
+        let started = server.start_in("pairs", 70 + number).await;
+        for part in session.events.chunks(50) {
+            server.stored(&started.session, part).await;
+        }
+        server.receipt(&started.session, session.events.len() as u64).await;
+    }
+    let page = owner.open(&server, "/researcher/studies/pairs").await.text();
+    assert!(page.contains("<strong>2 of 40 people have completed the study</strong>"), "{page}");
+    let (_, balance) = page.split_once("Condition balance").unwrap();
+    let (_, method) = balance.split_once("<code>method</code>").unwrap();
+    let (method, _) = method.split_once("</table>").unwrap();
+    let count = |row: &str| -> Option<u64> {
+        row.split_once("class=\"number\">")?.1.split_once('<')?.0.parse().ok()
+    };
+    let levels: Vec<u64> = method.split("<tr>").filter_map(count).collect();
+    let (_, times) = page.split_once("Time per trial").unwrap();
+    // The first row is of all trials, their number in its last cell.
+    let (all, _) = times.split_once("<tbody>").unwrap().1.split_once("</tr>").unwrap();
+    let trials: u64 =
+        all.rsplit_once("class=\"number\">").unwrap().1.trim_end_matches("</td>").parse().unwrap();
+    assert!(levels.len() > 1 && trials > 0, "{method}");
+    assert_eq!(levels.iter().sum::<u64>(), 2 * trials, "{method} {trials}");
+}
+
 /// Neither sums that were kept nor those that are on their way outlive the answers.
 pub async fn a_deleted_session_leaves_no_sums(server: &TestServer) {
     demo_participant(server, 1, usize::MAX).await;

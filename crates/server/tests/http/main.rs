@@ -161,6 +161,7 @@ topics! {
     dashboard::sums_are_kept_and_are_what_is_counted_anew,
     dashboard::a_deleted_session_leaves_no_sums,
     dashboard::thresholds_so_far_are_shown,
+    dashboard::both_clips_of_a_pair_are_in_the_balance,
     researcher::exports_are_files,
     researcher::an_exclusion_is_in_export_and_report,
     researcher::an_owner_deletes_a_participant_who_asks_for_it,

@@ -19,7 +19,7 @@ pub(super) type Blocks = BTreeMap<String, AdaptiveComponent>;
 /// What a replay finds of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Replayed {
-    /// Whether the varied clip was chosen.
+    /// Whether the varied clip was chosen, or whether it was said rightly that the clips differ.
     right: Option<bool>,
     /// Mean and standard deviation of the track's threshold after the answer.
     threshold: Option<[f64; 2]>,
@@ -47,9 +47,10 @@ pub(super) fn replay(
             let Some(shown) = &step.attempt.level else { continue };
             let chosen = closed_loop.next();
             let is_same = chosen.as_ref().is_some_and(|chosen| is_alike(chosen, shown, step));
-            let side = step.answers.get(&block.question).and_then(Value::as_str);
-            closed_loop.answer(side);
-            let right = side.map(|side| (side == "left") != shown.left);
+            let answer = step.answers.get(&block.question).and_then(Value::as_str);
+            closed_loop.answer(answer);
+            let seen = answer.and_then(|answer| block.seen(answer, shown.left));
+            let right = seen.map(|seen| block.is_right(seen, shown.catch));
             let threshold = closed_loop.threshold(shown.track as usize);
             found.insert(place, Replayed { right, threshold, is_same });
         }

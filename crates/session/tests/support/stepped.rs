@@ -121,6 +121,6 @@ fn chosen(request: &Value) -> [Input; 2] {
         }
         None => json!({ "type": "levels_over", "step": request["step"] }),
     };
-    let after = ["left", "right"].map(|side| closed_loop.after(side).clips());
+    let after = [false, true].map(|seen| closed_loop.after(seen).clips());
     [Input::LevelsAhead(after.concat()), Input::LevelChosen(event)]
 }

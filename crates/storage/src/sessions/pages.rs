@@ -71,7 +71,7 @@ impl Storage {
     ) -> Result<Vec<SessionState>, StorageError> {
         let rows = query(AssertSqlSafe(format!(
             "SELECT s.session_key, s.participant, s.config_hash, s.stage, s.assigned_condition, s.status, \
-             s.deleted_ms, {DUE_MS} AS due_ms, s.event_count, s.receipt_events, v.event_count AS summed_events, \
+             s.deleted_ms, s.ended_ms, {DUE_MS} AS due_ms, s.event_count, s.receipt_events, v.event_count AS summed_events, \
              v.receipt_events AS summed_receipt \
              FROM sessions s LEFT JOIN session_sums v \
              ON v.session_key = s.session_key AND v.form = $2 \
@@ -108,6 +108,7 @@ fn session_state(row: &Row) -> Result<SessionState, StorageError> {
         condition: Some(condition).filter(|name| !name.is_empty()),
         standing: standing(&row.get::<String>("status")?)?,
         is_deleted: row.get::<Option<i64>>("deleted_ms")?.is_some(),
+        ended_ms: row.get("ended_ms")?,
         sign_of_life_due_ms: row.get("due_ms")?,
         counted: CountedSo {
             event_count: row.unsigned(TABLE, "event_count")?,

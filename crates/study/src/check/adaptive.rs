@@ -85,11 +85,29 @@ fn question(subject: &Subject<'_>, block: &AdaptiveComponent, pointer: &str, iss
         issues.error(place, Problem::unknown("question", &block.question, known));
         return;
     };
-    let tells = matches!(&question.kind, QuestionKind::Comparison(kind) if !kind.allow_same);
     let is_plain =
         question.required && question.show_if.is_none() && question.attention_check.is_none();
-    if !tells || !is_plain {
-        issues.error(place, Problem::NotTwoSides { question: block.question.clone() });
+    let name = || block.question.clone();
+    let Some(yes) = &block.yes else {
+        let tells = matches!(&question.kind, QuestionKind::Comparison(kind) if !kind.allow_same);
+        if !tells || !is_plain {
+            issues.error(place, Problem::NotTwoSides { question: name() });
+        }
+        return;
+    };
+    match &question.kind {
+        QuestionKind::SingleChoice(kind)
+            if is_plain && kind.options.len() == 2 && kind.truth.is_none() =>
+        {
+            if !kind.options.iter().any(|option| option.value == *yes) {
+                let values = kind.options.iter().map(|option| option.value.as_str());
+                issues.error(below(pointer, "yes"), Problem::unknown("option", yes, values));
+            }
+        }
+        _ => issues.error(place, Problem::NotYesOrNo { question: name() }),
+    }
+    if block.catches() == 0 {
+        issues.error(below(pointer, "catch"), Problem::YesWithoutCatchTrials);
     }
 }
 
@@ -104,7 +122,7 @@ fn rule(block: &AdaptiveComponent, pointer: &str, issues: &mut Issues) {
                 let unit = "thresholds";
                 let problem = Problem::OutOfRange { value: count, unit, least: 2.0, most: 1000.0 };
                 issues.error(place, problem);
-            } else if let Err(error) = QuestPlus::new(grid(rule, &block.vary)) {
+            } else if let Err(error) = QuestPlus::new(grid(rule, block)) {
                 issues.error(place, Problem::LevelGrid { what: error.to_string() });
             }
         }

@@ -429,6 +429,12 @@ WeibullFalls: "adaptive", "a Weibull function rises from 0, and these levels fal
 NotTwoSides { question: String }: "adaptive",
     "\"{question}\" does not say left or right in every trial",
     "name a question of type \"comparison\", required, without \"allowSame\", \"showIf\" and \"attentionCheck\"";
+NotYesOrNo { question: String }: "adaptive",
+    "\"{question}\" does not say yes or no in every trial",
+    "name a question of type \"singleChoice\" with two options, required, without \"truth\", \"showIf\" and \"attentionCheck\"";
+YesWithoutCatchTrials: "adaptive",
+    "who always says yes is not found without catch trials",
+    "write for instance \"catch\": 0.2";
 LevelGrid { what: String }: "adaptive", "{what}", "correct the rule";
 OneRule: "adaptive", "a block follows one rule", "write either \"questPlus\" or \"staircase\"";
 BetweenLevels { length: f64, apart: f64 }: "adaptive",

@@ -8,7 +8,7 @@ use super::json_block::JsonBlock;
 use super::{Clip, ClipEntry, Component, FactorValue, LocalText, MethodEntry, Study};
 
 /// A block of trials whose levels follow the answers. Each trial shows the varied clip and the one that it is held
-/// against side by side, in step, and asks which of them is the varied one.
+/// against side by side, in step, and asks which of them is the varied one, or whether they differ.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct AdaptiveComponent {
@@ -35,13 +35,17 @@ pub struct AdaptiveComponent {
     /// Tracks that are mixed, each with levels of its own.
     #[serde(default = "one")]
     pub tracks: u32,
-    /// Further trials at the easiest level that no track counts, as a share of all tracks' trials: they show who
-    /// does not look.
+    /// Further trials that no track counts, as a share of all tracks' trials. They are at the easiest level and show who
+    /// does not look; where the answer is `yes` or not they are at `from`, and show who says yes without a difference.
     #[serde(default)]
     pub catch: f64,
     /// Identifier of one of the study's `questions`, of type `comparison` without `allowSame`: which of the two clips
-    /// is the varied one.
+    /// is the varied one. With `yes`: of type `singleChoice` with two options.
     pub question: String,
+    /// The option of a `singleChoice` that says that the clips differ: `yes`. Nobody is then right by chance, and catch
+    /// trials are required.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yes: Option<String>,
     /// A line above the clips.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instruction: Option<LocalText>,
@@ -169,6 +173,32 @@ fn tidy(level: f64) -> f64 {
 }
 
 impl AdaptiveComponent {
+    /// Share of answers that the difference is seen where nobody sees it: one of two clips by chance, or none.
+    pub fn guess(&self) -> f64 {
+        if self.yes.is_some() { 0.0 } else { 0.5 }
+    }
+
+    /// The level of catch trials: where everybody sees the difference, or where there is none.
+    pub fn catch_level(&self) -> f64 {
+        if self.yes.is_some() { self.vary.from } else { self.vary.to }
+    }
+
+    /// Whether an answer says that the difference is seen: the varied clip was chosen, or `yes`. `left`: whether the clip
+    /// that stays the same stands left.
+    pub fn seen(&self, answer: &str, left: bool) -> Option<bool> {
+        match (&self.yes, answer) {
+            (Some(yes), answer) => Some(yes == answer),
+            (None, "left") => Some(!left),
+            (None, "right") => Some(left),
+            _ => None,
+        }
+    }
+
+    /// Whether that is right: in a catch trial without a difference it is not.
+    pub fn is_right(&self, seen: bool, catch: bool) -> bool {
+        seen != (catch && self.yes.is_some())
+    }
+
     /// Catch trials.
     pub fn catches(&self) -> usize {
         let counted = f64::from(self.trials) * f64::from(self.tracks);

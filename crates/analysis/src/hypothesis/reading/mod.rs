@@ -1,6 +1,7 @@
 //! Results in plain words. Only tests on one value a person are read; a trial-level p is never taken
 //! for more than a number.
 
+mod decision;
 mod detection;
 mod equivalence;
 mod other_clips;
@@ -10,16 +11,18 @@ use mimique_stats::{Outcome, Term};
 
 use crate::hypothesis::call::Design;
 use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::decision::Decision;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::undefined::TestOutcome;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::trials::measure::MeasureKind;
+pub(crate) use decision::{decision, mark};
 pub(crate) use detection::d_prime_by;
 pub(crate) use equivalence::{equivalence, verdict};
 pub(crate) use other_clips::other_clips;
-use pairs::{each_pair, many_pairs};
+use pairs::{each_pair, many_pairs, topic};
 
 /// The level of a test.
 pub(crate) const LEVEL: f64 = 0.05;
@@ -46,9 +49,11 @@ pub(crate) fn person_level(
         ));
     }
     for overall in &result.overall {
-        sentences.push(overall_sentence(naming, overall, factor, label));
+        sentences.push(overall_sentence(naming, overall, kind, factor, label));
     }
     if result.pairs.len() <= 3 {
+        // The overall test has named the question.
+        let label = result.overall.is_empty().then_some(label);
         sentences.extend(each_pair(naming, &result.pairs, kind, factor, label));
     } else {
         sentences.extend(many_pairs(naming, &result.pairs, kind, factor));
@@ -78,10 +83,12 @@ fn unit(language: Language, kind: MeasureKind) -> &'static str {
 fn overall_sentence(
     naming: &Naming<'_>,
     outcome: &TestOutcome,
+    kind: MeasureKind,
     factor: &str,
     label: &str,
 ) -> String {
     let language = naming.language;
+    let topic = topic(language, kind, label);
     let line = match outcome {
         Outcome::Undefined { reason } => {
             let reason = reason.words(language);
@@ -103,19 +110,19 @@ fn overall_sentence(
     let numbers = numbers(language, line);
     let significant = line.p_that_counts() < LEVEL;
     if interaction.is_some() && line.call.design != Design::Combinations {
-        return acting_together(language, line, &what, &numbers, significant);
+        return acting_together(language, line, [&topic, &what], &numbers, significant);
     }
     if significant {
         if interaction.is_some() {
             return language.pick(
-                format!("The two factors seem to act together ({what}): {numbers}. On ratings of few steps this transform is not reliable; check it with a mixed model before relying on it. The clips are taken as they are: where clips differ by chance, such a test finds an interaction that is none far more often than in 5 %."),
-                format!("Les deux facteurs semblent agir ensemble ({what}) : {numbers}. Sur des notes à peu d’échelons cette transformation n’est pas fiable ; vérifiez par un modèle mixte avant de vous y fier. Les extraits sont pris tels qu’ils sont : là où des extraits diffèrent par hasard, un tel test trouve une interaction qui n’en est pas bien plus souvent que dans 5 % des cas."),
+                format!("{topic}, the two factors seem to act together ({what}): {numbers}: a hint, to be checked."),
+                format!("{topic}, les deux facteurs semblent agir ensemble ({what}) : {numbers} : un indice, à vérifier."),
             );
         }
         return language.pick(
-            format!("The levels of {what} differ: {numbers}, {} people.", line.row.n),
+            format!("{topic}, the levels of {what} differ: {numbers}, {} people.", line.row.n),
             format!(
-                "Les niveaux du facteur {what} diffèrent : {numbers}, {} personnes.",
+                "{topic}, les niveaux du facteur {what} diffèrent : {numbers}, {} personnes.",
                 line.row.n
             ),
         );
@@ -123,13 +130,13 @@ fn overall_sentence(
     if let Some((first, second)) = interaction {
         let (first, second) = (naming.factor(first), naming.factor(second));
         return language.pick(
-            format!("That the effect of {first} depends on {second} was not shown: {numbers}, {} people; that is no proof that it does not.", line.row.n),
-            format!("Que l’effet du facteur {first} dépende du facteur {second} n’a pas été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’en dépend pas.", line.row.n),
+            format!("{topic}, that the effect of {first} depends on {second} was not shown: {numbers}, {} people; that is no proof that it does not.", line.row.n),
+            format!("{topic}, que l’effet du facteur {first} dépende du facteur {second} n’a pas été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’en dépend pas.", line.row.n),
         );
     }
     language.pick(
-        format!("No effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.row.n),
-        format!("Aucun effet du facteur {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
+        format!("{topic}, no effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.row.n),
+        format!("{topic}, aucun effet du facteur {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
     )
 }
 
@@ -160,7 +167,7 @@ fn numbers(language: Language, line: &TestLine) -> String {
 fn acting_together(
     language: Language,
     line: &TestLine,
-    what: &str,
+    [topic, what]: [&str; 2],
     numbers: &str,
     significant: bool,
 ) -> String {
@@ -177,30 +184,29 @@ fn acting_together(
     };
     if significant {
         language.pick(
-            format!("The two factors act together ({what}). {how}."),
-            format!("Les deux facteurs agissent ensemble ({what}). {how}."),
+            format!("{topic}, the two factors act together ({what}). {how}."),
+            format!("{topic}, les deux facteurs agissent ensemble ({what}). {how}."),
         )
     } else {
         language.pick(
-            format!("That the two factors act together ({what}) was not shown. {how}; that is no proof that they do not."),
-            format!("Que les deux facteurs agissent ensemble ({what}) n’a pas été montré. {how} ; cela ne prouve pas qu’ils ne le font pas."),
+            format!("{topic}, that the two factors act together ({what}) was not shown. {how}; that is no proof that they do not."),
+            format!("{topic}, que les deux facteurs agissent ensemble ({what}) n’a pas été montré. {how} ; cela ne prouve pas qu’ils ne le font pas."),
         )
     }
 }
 
-/// What the correction for all hypotheses of the study leaves of one.
-pub(crate) fn over_hypotheses(language: Language, p: f64, p_holm: f64, tested: usize) -> String {
+/// What the correction for all hypotheses of the study leaves of one; what follows it is without that correction.
+pub(crate) fn over_hypotheses(
+    language: Language,
+    found: Decision,
+    p_holm: f64,
+    tested: usize,
+) -> String {
     let corrected = language.p(p_holm);
-    let lost = p < LEVEL && p_holm >= LEVEL;
-    if lost {
-        return language.pick(
-            format!("Corrected for the {tested} hypotheses of this study: {corrected}, no longer below 0.05."),
-            format!("Corrigé pour les {tested} hypothèses de cette étude : {corrected}, qui n’est plus sous 0,05."),
-        );
-    }
+    let words = decision(language, found);
     language.pick(
-        format!("Corrected for the {tested} hypotheses of this study: {corrected}."),
-        format!("Corrigé pour les {tested} hypothèses de cette étude : {corrected}."),
+        format!("Corrected for the {tested} hypotheses of this study: {words}, {corrected}. Before that correction:"),
+        format!("Après correction pour les {tested} hypothèses de cette étude : {words}, {corrected}. Avant cette correction :"),
     )
 }
 
@@ -209,6 +215,22 @@ pub(crate) fn trial_level_caution(language: Language) -> &'static str {
     language.pick(
         "The columns “as in the thesis” treat every trial as if it came from another person, although each person answered many. Their p counts one opinion several times: it is printed for comparison with the thesis and supports no conclusion here.",
         "Les colonnes « comme dans la thèse » traitent chaque essai comme s’il venait d’une autre personne, alors que chacune en a fait plusieurs. Leur p compte une même opinion plusieurs fois : il est imprimé pour comparaison avec la thèse et n’autorise ici aucune conclusion.",
+    )
+}
+
+/// Said wherever interactions are tested by ranks.
+pub(crate) fn interaction_caution(language: Language) -> &'static str {
+    language.pick(
+        "Interactions of factors of the clips are tested by the aligned rank transform, which is not reliable on ratings of few steps and takes the clips as they are: where clips differ by chance, it finds an interaction that is none far more often than in 5 % of studies. Take what it shows for a hint, and check it with a mixed model before relying on it.",
+        "Les interactions de facteurs des extraits sont testées par la transformation des rangs alignés, qui n’est pas fiable sur des notes à peu d’échelons et prend les extraits tels qu’ils sont : là où des extraits diffèrent par hasard, elle trouve une interaction qui n’en est pas bien plus souvent que dans 5 % des études. Prenez ce qu’elle montre pour un indice, et vérifiez-le par un modèle mixte avant de vous y fier.",
+    )
+}
+
+/// Said where differences are not shown.
+pub(crate) fn no_proof(language: Language) -> &'static str {
+    language.pick(
+        "Where nothing was shown, that is no proof that there is nothing; the interval says how large it may be.",
+        "Là où rien n’a été montré, cela ne prouve pas qu’il n’y a rien ; l’intervalle dit quelle taille cela peut avoir.",
     )
 }
 

@@ -66,30 +66,23 @@ fn of_model(naming: &Naming<'_>, model: &ClipModel, factor: &str) -> Vec<String>
             format!("le modèle mixte n’a montré aucun effet du facteur {shown} ({numbers}) ; cela ne prouve pas qu’il n’y en a pas."),
         )
     }];
-    if model.pairs.len() <= 3 {
-        for pair in &model.pairs {
-            // The level that stands higher is told of the other one.
-            let (low, high, odds, [least, most], share) = if pair.odds_ratio >= 1.0 {
-                (&pair.a, &pair.b, pair.odds_ratio, pair.interval_95, pair.higher)
-            } else {
-                let [least, most] = pair.interval_95;
-                (
-                    &pair.b,
-                    &pair.a,
-                    1.0 / pair.odds_ratio,
-                    [1.0 / most, 1.0 / least],
-                    1.0 - pair.higher,
-                )
-            };
-            let (low, high) = (naming.level(factor, low), naming.level(factor, high));
-            let [odds, least, most] = [odds, least, most].map(|value| language.fixed(value, 1));
-            let share = language.percent(share);
-            let p = language.p(pair.p_corrected);
-            sentences.push(language.pick(
-                format!("{high} against {low}: odds of a higher rating {odds} times ({least} to {most}), {p}; {high} is the higher of two in {share}."),
-                format!("{high} par rapport à {low} : chances d’une note plus haute multipliées par {odds} ({least} à {most}), {p} ; {high} est la plus haute de deux notes dans {share} des cas."),
-            ));
-        }
+    // The odds of several pairs stand in the table of tests.
+    if let [pair] = model.pairs.as_slice() {
+        // The level that stands higher is told of the other one.
+        let (low, high, odds, [least, most], share) = if pair.odds_ratio >= 1.0 {
+            (&pair.a, &pair.b, pair.odds_ratio, pair.interval_95, pair.higher)
+        } else {
+            let [least, most] = pair.interval_95;
+            (&pair.b, &pair.a, 1.0 / pair.odds_ratio, [1.0 / most, 1.0 / least], 1.0 - pair.higher)
+        };
+        let (low, high) = (naming.level(factor, low), naming.level(factor, high));
+        let [odds, least, most] = [odds, least, most].map(|value| language.fixed(value, 1));
+        let share = language.percent(share);
+        let p = language.p(pair.p_corrected);
+        sentences.push(language.pick(
+            format!("{high} against {low}: odds of a higher rating {odds} times ({least} to {most}), {p}; {high} is the higher of two in {share}."),
+            format!("{high} par rapport à {low} : chances d’une note plus haute multipliées par {odds} ({least} à {most}), {p} ; {high} est la plus haute de deux notes dans {share} des cas."),
+        ));
     }
     for term in &model.at_zero {
         sentences.push(language.pick(

@@ -9,29 +9,20 @@ use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::trials::measure::MeasureKind;
 
-/// A sentence on each pair.
+/// A sentence on each pair; `label` is that of the question where nothing before has named it.
 pub(super) fn each_pair(
     naming: &Naming<'_>,
     pairs: &[Pair],
     kind: MeasureKind,
     factor: &str,
-    label: &str,
+    label: Option<&str>,
 ) -> Vec<String> {
     let language = naming.language;
     let mut sentences = Vec::new();
-    let mut unshown = false;
     for (place, pair) in pairs.iter().enumerate() {
         // Named once; the sentences after it are about the same question.
-        let topic = (place == 0).then(|| topic(language, kind, label));
-        let (words, shown) = pair_sentence(naming, pair, kind, factor, topic, pairs.len());
-        sentences.push(words);
-        unshown |= !shown;
-    }
-    if unshown {
-        sentences.push(language.pick(
-            "Where no difference was shown, that is no proof that there is none; the interval says how large it may be.",
-            "Là où aucune différence n’a été montrée, cela ne prouve pas qu’il n’y en a pas ; l’intervalle dit quelle taille elle peut avoir.",
-        ).to_owned());
+        let topic = label.filter(|_| place == 0).map(|label| topic(language, kind, label));
+        sentences.push(pair_sentence(naming, pair, kind, factor, topic, pairs.len()));
     }
     sentences
 }
@@ -89,7 +80,7 @@ pub(super) fn oriented(pair: &Pair) -> (&str, &str, Option<f64>) {
     }
 }
 
-/// A sentence on a pair, and whether it leaves nothing open: no difference that may still be there.
+/// A sentence on a pair.
 fn pair_sentence(
     naming: &Naming<'_>,
     pair: &Pair,
@@ -97,14 +88,14 @@ fn pair_sentence(
     factor: &str,
     topic: Option<String>,
     tested: usize,
-) -> (String, bool) {
+) -> String {
     let language = naming.language;
     let (a, b) = (level(naming, factor, &pair.a), level(naming, factor, &pair.b));
     let sentence = |words, begins_with_level| sentence(topic.as_deref(), words, begins_with_level);
     let line = match &pair.wilcoxon {
         Outcome::Ok(line) => line,
         Outcome::Undefined { .. } => {
-            return (sentence(undefined_pair(language, pair.n, &a, &b), false), true);
+            return sentence(undefined_pair(language, pair.n, &a, &b), false);
         }
     };
     let observed = observed(language, kind, pair, line);
@@ -114,7 +105,7 @@ fn pair_sentence(
             format!("{} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {least}. Observed: {observed}.", pair.n),
             format!("{} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {least}. Observé : {observed}.", pair.n),
         );
-        return (sentence(words, false), true);
+        return sentence(words, false);
     }
     let p = language.p(line.p_that_counts());
     let corrected = match (tested > 1, language) {
@@ -136,13 +127,13 @@ fn pair_sentence(
             format!("{high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {observed}, {p}{corrected}.", pair.n),
             format!("{high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {observed}, {p}{corrected}.", pair.n),
         );
-        return (sentence(words, true), true);
+        return sentence(words, true);
     }
     let words = language.pick(
         format!("no difference between {a} and {b} was shown: {observed}, {p}{corrected}, {} people.", pair.n),
         format!("aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {} personnes.", pair.n),
     );
-    (sentence(words, false), false)
+    sentence(words, false)
 }
 
 /// Words as a sentence. A level's name keeps its letters at the start; a word begins with a capital.
@@ -205,7 +196,8 @@ fn level(naming: &Naming<'_>, factor: &str, level: &str) -> String {
     }
 }
 
-fn topic(language: Language, kind: MeasureKind, label: &str) -> String {
+/// What is compared, at the start of a sentence.
+pub(super) fn topic(language: Language, kind: MeasureKind, label: &str) -> String {
     match kind {
         MeasureKind::Recognition => language.pick("In recognition", "En reconnaissance").to_owned(),
         MeasureKind::ResponseTime => {

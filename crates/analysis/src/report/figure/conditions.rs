@@ -20,8 +20,8 @@ pub(crate) fn people_by_condition(
     let all = || conditions.iter().flat_map(|(_, people)| people.iter().map(|(_, mean)| *mean));
     let (low, high) =
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-    let (top, bottom) = (16.0, 244.0);
-    let mut svg = Svg::new(caption, bottom + 34.0);
+    let (top, bottom) = (28.0, 256.0);
+    let mut svg = Svg::new(caption, bottom + 52.0);
     let place = vertical(&mut svg, language, kind, (low, high), (top, bottom));
     let step = (RIGHT - LEFT) / conditions.len() as f64;
     let heading =
@@ -45,6 +45,8 @@ pub(crate) fn people_by_condition(
         svg.circle(x, place(mean), 5.0, "mark");
         spoken.push(format!("{name} {} ({})", tick(language, kind, mean, 2), people.len()));
     }
+    let title = language.pick("condition", "condition");
+    svg.text((LEFT + RIGHT) / 2.0, bottom + 46.0, "small", Anchor::Middle, title);
     let spoken = spoken.join(", ");
     let alt = language.pick(
         format!("One small point each of {} people by condition, a large one for the mean of each condition, with its number of people: {spoken}.", all().count()),

@@ -46,6 +46,7 @@ pub fn confusion_matrix(
     let headings = std::iter::once(of_rows).chain(names).chain(beside);
     let mut data = DataTable::new(id, caption.clone(), headings.cloned());
     svg.text(LEFT, 18.0, "soft", Anchor::Start, columns);
+    svg.text(LEFT - 10.0, 49.0, "soft", Anchor::End, &clipped(of_rows, 15));
     column_labels(&mut svg, names, size);
     for (i, ConfusionRow { label, counts, beside }) in rows.iter().enumerate() {
         let y = top + height * i as f64;

@@ -6,13 +6,15 @@ use crate::hypothesis::person_level::Pair;
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
-use crate::report::figure::{LEFT, RIGHT};
+use crate::report::figure::{LEFT, RIGHT, differences_title};
+use crate::trials::measure::MeasureKind;
 
 /// Differences of each person, with the Hodges-Lehmann estimate and its interval.
 pub(crate) fn differences(
     language: Language,
     id: &str,
     caption: &str,
+    kind: MeasureKind,
     pairs: &[([String; 2], &Pair)],
 ) -> Figure {
     let all = || pairs.iter().flat_map(|(_, pair)| pair.differences.iter().copied());
@@ -23,12 +25,17 @@ pub(crate) fn differences(
     let axis = Axis::new(low, high, LEFT, RIGHT - 6.0);
     let (top, height) = (26.0, 78.0);
     let bottom = top + height * pairs.len() as f64;
-    let mut svg = Svg::new(caption, bottom + 30.0);
+    let mut svg = Svg::new(caption, bottom + 44.0);
+    let title = differences_title(language, kind);
+    svg.text((LEFT + RIGHT) / 2.0, bottom + 35.0, "small", Anchor::Middle, title);
     for &tick in &axis.ticks {
         let x = axis.place(tick);
         let class = if tick.abs() < 1e-12 { "zero" } else { "rule" };
         svg.line([x, top - 6.0], [x, bottom], class);
-        let text = language.fixed(tick, axis.decimals);
+        let text = match kind {
+            MeasureKind::Recognition => language.fixed(100.0 * tick, 0),
+            _ => language.fixed(tick, axis.decimals),
+        };
         svg.text(x, bottom + 17.0, "small", Anchor::Middle, &text);
     }
     let mut data = DataTable::new(id, caption, difference_columns(language));

@@ -4,7 +4,8 @@ use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::differences::difference_dots;
 use crate::report::figure::svg::{Anchor, Axis, Svg};
-use crate::report::figure::{LEFT, RIGHT};
+use crate::report::figure::{LEFT, RIGHT, differences_title};
+use crate::trials::measure::MeasureKind;
 
 /// An estimate and its interval at 90 %.
 pub(crate) struct EquivalenceInterval {
@@ -18,6 +19,7 @@ pub(crate) fn equivalence_zone(
     language: Language,
     id: &str,
     caption: &str,
+    kind: MeasureKind,
     smallest: f64,
     intervals: &[EquivalenceInterval],
     differences: &[f64],
@@ -30,7 +32,9 @@ pub(crate) fn equivalence_zone(
     let (top, height) = (26.0, 34.0);
     let dots = if differences.is_empty() { 0.0 } else { 62.0 };
     let bottom = top + dots + height * intervals.len() as f64;
-    let mut svg = Svg::new(caption, bottom + 30.0);
+    let mut svg = Svg::new(caption, bottom + 44.0);
+    let title = differences_title(language, kind);
+    svg.text((LEFT + RIGHT) / 2.0, bottom + 35.0, "small", Anchor::Middle, title);
     let (left, right) = (axis.place(-smallest), axis.place(smallest));
     svg.class_rect([left, top - 6.0, right - left, bottom - top + 6.0], "box");
     for &tick in &axis.ticks {

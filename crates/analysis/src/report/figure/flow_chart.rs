@@ -8,6 +8,22 @@ use crate::report::figure::svg::{Anchor, Svg};
 use crate::trials::export::Flow;
 use crate::trials::reason::Reason;
 
+/// Letters of a line beside the chart.
+const LINE: usize = 22;
+
+/// The same as the chart, in a sentence.
+pub(crate) fn flow_in_words(language: Language, flow: &Flow) -> String {
+    let colon = colon(language);
+    let left_out = language.pick("left out", "écartés");
+    let words = steps(language, flow).map(|Step { count, label, left_out: reasons }| match reasons
+        .as_slice()
+    {
+        [] => format!("{count} {label}"),
+        reasons => format!("{count} {label} ({left_out}{colon} {})", reasons.join(", ")),
+    });
+    format!("{}.", words.join(" → "))
+}
+
 pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
     let caption = language
         .pick(
@@ -23,11 +39,15 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
     );
     let (left, width, height) = (4.0, 262.0, 44.0);
     let mut y = 8.0;
-    let tops: Vec<f64> = steps
+    let lines: Vec<Vec<String>> = steps
         .iter()
-        .map(|step| {
+        .map(|step| step.left_out.iter().flat_map(|reason| wrapped(reason)).collect())
+        .collect();
+    let tops: Vec<f64> = lines
+        .iter()
+        .map(|lines| {
             let top = y;
-            y += height + 26.0 + 16.0 * (step.left_out.len() as f64 - 1.0).max(0.0);
+            y += height + 26.0 + 16.0 * (lines.len() as f64 - 1.0).max(0.0);
             top
         })
         .collect();
@@ -47,9 +67,9 @@ pub(crate) fn flow_chart(language: Language, flow: &Flow) -> Figure {
             let heading = language.pick("left out", "écartés");
             svg.line([left + width, top + 22.0], [left + width + 16.0, top + 22.0], "whisker");
             svg.text(left + width + 22.0, top + 18.0, "soft", Anchor::Start, heading);
-            for (line, reason) in left_out.iter().enumerate() {
+            for (line, words) in lines[place].iter().enumerate() {
                 let y = top + 35.0 + 16.0 * line as f64;
-                svg.text(left + width + 22.0, y, "", Anchor::Start, reason);
+                svg.text(left + width + 22.0, y, "", Anchor::Start, words);
             }
         }
         spoken.push(format!("{count} {label}"));
@@ -92,10 +112,11 @@ fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
     let mut people_out = reasons(language, &flow.people_left_out);
     if !flow.researcher_reasons.is_empty() {
         // Each of the researcher's own reasons has its line.
-        let whole = format!("{}: ", in_words(language, Reason::ByResearcher));
+        let whole = format!("{}{} ", in_words(language, Reason::ByResearcher), colon(language));
         let place = people_out.iter().position(|line| line.starts_with(&whole));
         let lines = flow.researcher_reasons.iter().map(|(reason, count)| {
-            format!("{} ({}): {count}", in_words(language, Reason::ByResearcher), shortened(reason))
+            let by = in_words(language, Reason::ByResearcher);
+            format!("{by} ({reason}){} {count}", colon(language))
         });
         if let Some(place) = place {
             people_out.splice(place..=place, lines);
@@ -105,20 +126,56 @@ fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
 }
 
 fn reasons(language: Language, left_out: &BTreeMap<Reason, usize>) -> Vec<String> {
-    let line =
-        |(&reason, count): (&Reason, &usize)| format!("{}: {count}", in_words(language, reason));
+    let line = |(&reason, count): (&Reason, &usize)| {
+        format!("{}{} {count}", in_words(language, reason), colon(language))
+    };
     left_out.iter().map(line).collect()
 }
 
-/// A reason as it fits beside the chart.
-fn shortened(reason: &str) -> String {
-    const MOST: usize = 40;
-    if reason.chars().count() <= MOST {
-        return reason.to_owned();
+/// A reason in lines that fit beside the chart; a word longer than a line is cut where the line ends.
+fn wrapped(reason: &str) -> Vec<String> {
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in reason.split(' ') {
+        let mut letters: Vec<char> = word.chars().collect();
+        loop {
+            let line = lines.last_mut().expect("there is a line");
+            let used = line.chars().count();
+            let between = usize::from(used > 0);
+            if used + between + letters.len() <= LINE {
+                line.extend(std::iter::repeat_n(' ', between));
+                line.extend(&letters);
+                break;
+            }
+            if used > 0 {
+                lines.push(String::new());
+            } else {
+                line.extend(letters.drain(..LINE));
+                lines.push(String::new());
+            }
+        }
     }
-    reason.chars().take(MOST - 1).chain(['…']).collect()
+    lines
+}
+
+fn colon(language: Language) -> &'static str {
+    language.pick(":", " :")
 }
 
 fn in_words(language: Language, reason: Reason) -> &'static str {
     language.pick(reason.english(), reason.french())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_are_wrapped_and_no_letter_is_lost() {
+        let reason = "by the researcher (answered every question with the middle of the scale): 2";
+        let lines = wrapped(reason);
+        assert!(lines.iter().all(|line| line.chars().count() <= LINE), "{lines:?}");
+        assert_eq!(lines.join(" "), reason);
+        let long = "a".repeat(60);
+        assert_eq!(wrapped(&long).concat(), long);
+    }
 }

@@ -19,7 +19,7 @@ pub(crate) fn likert(
     let points: Vec<i64> = (first..=last).collect();
     let (top, height, gap) = (44.0, 26.0, 12.0);
     let right = WIDTH - 48.0;
-    let mut svg = Svg::new(caption, top + (height + gap) * rows.len() as f64 + 28.0);
+    let mut svg = Svg::new(caption, top + (height + gap) * rows.len() as f64 + 42.0);
     let names: Vec<String> = points.iter().map(ToString::to_string).collect();
     answer_key(&mut svg, language, &names, right);
     svg.text(right + 10.0, 23.0, "soft", Anchor::Start, language.pick("mean", "moy."));
@@ -55,6 +55,8 @@ pub(crate) fn likert(
         let x = LEFT + share * (right - LEFT);
         svg.text(x, bottom + 4.0, "small", Anchor::Middle, &language.percent(share));
     }
+    let title = language.pick("share of answers", "part des réponses");
+    svg.text((LEFT + right) / 2.0, bottom + 20.0, "small", Anchor::Middle, title);
     let alt = language.pick(
         format!("Stacked bars of all answers. Means: {}.", spoken.join(", ")),
         format!("Barres empilées de toutes les réponses. Moyennes : {}.", spoken.join(", ")),

@@ -8,6 +8,7 @@ mod detection;
 mod differences;
 mod equivalence;
 pub(crate) mod flow_chart;
+mod forest;
 mod likert;
 mod mixed_model;
 pub(crate) mod people;
@@ -27,6 +28,7 @@ pub use courses::{CoursePanel, time_courses};
 pub(crate) use detection::{DetectionPanel, DetectionPoints, detection_planes};
 pub(crate) use differences::differences;
 pub(crate) use equivalence::{EquivalenceInterval, equivalence_zone};
+pub(crate) use forest::{DrawnInterval, forest_row};
 pub(crate) use likert::likert;
 pub(crate) use mixed_model::{deviations, model_shares};
 pub(crate) use ranking::ranking;
@@ -35,9 +37,42 @@ pub(crate) use scatter::{ScatterPanel, scatter};
 pub(crate) use shares::shares;
 pub(crate) use traces::traces;
 
+use crate::language::Language;
 use crate::report::figure::svg::WIDTH;
+use crate::trials::measure::MeasureKind;
 
 /// Left edge of the plotting area beside row labels.
 const LEFT: f64 = 116.0;
 /// Its right edge.
 const RIGHT: f64 = WIDTH - 10.0;
+
+/// The title of an axis of values, with their unit.
+fn values_title(language: Language, kind: MeasureKind) -> &'static str {
+    match kind {
+        MeasureKind::Rating => language.pick("answer (points)", "réponse (points)"),
+        MeasureKind::Recognition => {
+            language.pick("share of right answers", "part de réponses justes")
+        }
+        MeasureKind::ResponseTime => language.pick("response time (s)", "temps de réponse (s)"),
+        MeasureKind::Choice => language.pick("share of choices", "part des choix"),
+    }
+}
+
+/// The same of differences of values.
+fn differences_title(language: Language, kind: MeasureKind) -> &'static str {
+    match kind {
+        MeasureKind::Rating => {
+            language.pick("difference of answers (points)", "différence des réponses (points)")
+        }
+        MeasureKind::Recognition => language.pick(
+            "difference of shares of right answers (percentage points)",
+            "différence des parts de réponses justes (points de pourcentage)",
+        ),
+        MeasureKind::ResponseTime => {
+            language.pick("difference of response times (s)", "différence des temps de réponse (s)")
+        }
+        MeasureKind::Choice => {
+            language.pick("difference of shares of choices", "différence des parts des choix")
+        }
+    }
+}

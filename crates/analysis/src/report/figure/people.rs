@@ -5,6 +5,7 @@ use mimique_stats::Proportion;
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped, shade};
+use crate::report::figure::values_title;
 use crate::trials::measure::MeasureKind;
 
 pub(super) const LEFT: f64 = 52.0;
@@ -20,7 +21,7 @@ pub(super) fn tick(language: Language, kind: MeasureKind, value: f64, decimals: 
     }
 }
 
-/// A vertical axis with its rules; the place of a value.
+/// A vertical axis with its title and rules; the place of a value.
 pub(super) fn vertical(
     svg: &mut Svg,
     language: Language,
@@ -29,6 +30,7 @@ pub(super) fn vertical(
     (top, bottom): (f64, f64),
 ) -> impl Fn(f64) -> f64 + use<> {
     let axis = Axis::new(low, high, bottom, top);
+    svg.text(4.0, top - 10.0, "small", Anchor::Start, values_title(language, kind));
     for &value in &axis.ticks {
         let y = axis.place(value);
         svg.line([LEFT, y], [RIGHT, y], "rule");
@@ -44,14 +46,14 @@ pub(crate) fn person_lines(
     id: &str,
     caption: &str,
     kind: MeasureKind,
-    levels: &[String],
+    (factor, levels): (&str, &[String]),
     people: &[(String, Vec<f64>)],
 ) -> Figure {
     let all = || people.iter().flat_map(|(_, means)| means.iter().copied());
     let (low, high) =
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-    let (top, bottom) = (16.0, 244.0);
-    let mut svg = Svg::new(caption, bottom + 34.0);
+    let (top, bottom) = (28.0, 256.0);
+    let mut svg = Svg::new(caption, bottom + 52.0);
     let place = vertical(&mut svg, language, kind, (low, high), (top, bottom));
     let step = (RIGHT - LEFT) / levels.len() as f64;
     let x = |level: usize| LEFT + step * (level as f64 + 0.5);
@@ -61,6 +63,7 @@ pub(crate) fn person_lines(
         let y = if levels.len() > 4 && level % 2 == 1 { 31.0 } else { 18.0 };
         svg.text(x(level), bottom + y, "small", Anchor::Middle, &clipped(name, most.max(12)));
     }
+    svg.text((LEFT + RIGHT) / 2.0, bottom + 46.0, "small", Anchor::Middle, factor);
     // Many people together make a tone: a line of each is drawn all the thinner.
     let class = if people.len() > 60 { "person faint" } else { "person" };
     let heading = std::iter::once(language.pick("person", "personne").to_owned());
@@ -116,7 +119,7 @@ pub(crate) fn course(
 ) -> Figure {
     let low = parts.iter().map(|part| part.interval[0]).fold(f64::INFINITY, f64::min);
     let high = parts.iter().map(|part| part.interval[1]).fold(f64::NEG_INFINITY, f64::max);
-    let (top, bottom) = (16.0, 190.0);
+    let (top, bottom) = (28.0, 202.0);
     let mut svg = Svg::new(caption, bottom + 46.0);
     let place = vertical(&mut svg, language, kind, (low, high), (top, bottom));
     let step = (RIGHT - LEFT) / parts.len() as f64;
@@ -175,7 +178,7 @@ pub(crate) fn late_frames(
     let left = 116.0;
     let (top, height, gap) = (44.0, 26.0, 12.0);
     let tone = |class: usize| class as f64 / BORDERS.len() as f64;
-    let mut svg = Svg::new(caption, top + (height + gap) * rows.len() as f64 + 26.0);
+    let mut svg = Svg::new(caption, top + (height + gap) * rows.len() as f64 + 40.0);
     let step = (RIGHT - left) / names.len() as f64;
     for (class, name) in names.iter().enumerate() {
         let x = left + step * class as f64;
@@ -214,6 +217,8 @@ pub(crate) fn late_frames(
         let x = left + share * (RIGHT - left);
         svg.text(x, bottom + 4.0, "small", anchor, &language.percent(share));
     }
+    let title = language.pick("share of trials", "part des essais");
+    svg.text((left + RIGHT) / 2.0, bottom + 20.0, "small", Anchor::Middle, title);
     let alt = language.pick(
         format!("Stacked bars of trials by their share of late frames. Trials with any: {}.", spoken.join(", ")),
         format!("Barres empilées des essais selon leur part d’images en retard. Essais avec retard : {}.", spoken.join(", ")),
@@ -232,7 +237,7 @@ pub(crate) fn person_shares(
     let mut people: Vec<&(String, Proportion)> = people.iter().collect();
     let share = |person: &(String, Proportion)| person.1.proportion.unwrap_or(0.0);
     people.sort_by(|a, b| share(b).total_cmp(&share(a)).then_with(|| a.0.cmp(&b.0)));
-    let (top, bottom) = (16.0, 190.0);
+    let (top, bottom) = (28.0, 202.0);
     let mut svg = Svg::new(caption, bottom + 30.0);
     let kind = MeasureKind::Recognition;
     let place = vertical(&mut svg, language, kind, (0.0, 1.0), (top, bottom));

@@ -5,7 +5,8 @@ use mimique_stats::Proportion;
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
-use crate::report::figure::{LEFT, RIGHT};
+use crate::report::figure::{LEFT, RIGHT, values_title};
+use crate::trials::measure::MeasureKind;
 
 /// Shares of right answers with Wilson intervals, and the share that guessing would give.
 pub(crate) fn shares(
@@ -21,8 +22,10 @@ pub(crate) fn shares(
     let titled = groups.iter().any(|(title, _)| !title.is_empty());
     let heading = if titled { gap } else { 6.0 };
     let bottom = top + rows as f64 * line + groups.len() as f64 * heading;
-    let mut svg = Svg::new(caption, bottom + 30.0);
+    let mut svg = Svg::new(caption, bottom + 44.0);
     percent_rules(&mut svg, language, &axis, (top, bottom));
+    let title = values_title(language, MeasureKind::Recognition);
+    svg.text((LEFT + RIGHT - 46.0) / 2.0, bottom + 35.0, "small", Anchor::Middle, title);
     if let Some(chance) = chance {
         guessing_line(&mut svg, language, axis.place(chance), (top, bottom));
     }

@@ -35,7 +35,7 @@ pub(crate) fn traces(
         let text = language.fixed(*value, time.decimals);
         svg.text(time.place(*value), bottom + 16.0, "small", Anchor::Middle, &text);
     }
-    svg.text(RIGHT, bottom + 32.0, "small", Anchor::End, "s");
+    svg.text(RIGHT, bottom + 32.0, "small", Anchor::End, language.pick("time (s)", "temps (s)"));
     let x = |instant: usize| time.place(instant as f64 * step_seconds);
     let width = (RIGHT - LEFT) / levels.len().max(1) as f64;
     for (k, (name, own)) in levels.iter().enumerate() {

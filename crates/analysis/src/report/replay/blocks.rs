@@ -43,7 +43,7 @@ impl Collector {
                 let call = call.text(question).text(name).text(&person.participant);
                 let mut values = vec![("loglik", fit.loglik)];
                 let key = format!("threshold:{name}:{}", person.participant);
-                let call = call.text(fit.function).given(sign);
+                let call = call.text(fit.function).given(sign).given(fit.guess);
                 let threshold = sign * fit.level_at_half;
                 if levels_on_the_rise(fit, &person.shown, sign) < 2 {
                     given.push(format!("{threshold:?}"));

@@ -11,14 +11,14 @@ of_confidence <- function(test, question, confidence, category) {
 of_block <- function(block) which(trials[["shown.block"]] %in% block)
 
 # The psychometric function of a person; where levels fall they count with a minus.
-of_answers_by_level <- function(test, question, block, who, shape, sign) {
+of_answers_by_level <- function(test, question, block, who, shape, sign, guess) {
   own <- of_block(block)
   own <- own[person[own] == who & trials[["shown.catch"]][own] == "0"]
   level <- sign * as.numeric(trials[["shown.level"]][own])
   right <- as.numeric(trials[[paste0(question, ".right")]][own])
   known <- !is.na(right)
   n <- tapply(right[known], level[known], length)
-  fit <- test(as.numeric(names(n)), as.vector(n), as.vector(tapply(right[known], level[known], sum)), 0.5, NULL, shape)
+  fit <- test(as.numeric(names(n)), as.vector(n), as.vector(tapply(right[known], level[known], sum)), guess, NULL, shape)
   fit[["threshold"]] <- sign * fit[["threshold"]]
   fit
 }

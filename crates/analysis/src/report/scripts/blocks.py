@@ -10,13 +10,13 @@ def of_block(block):
     return columns["shown.block"] == block
 
 
-def of_answers_by_level(test, question, block, who, shape, sign):
+def of_answers_by_level(test, question, block, who, shape, sign, guess):
     """The psychometric function of a person; where levels fall they count with a minus."""
     own = of_block(block) & (person == who)
     own[own] = (columns["shown.catch"][own] == "0") & (columns[question + ".right"][own] != "")
     level, place = np.unique(sign * columns["shown.level"][own].astype(float), return_inverse=True)
     right = columns[question + ".right"][own].astype(float)
-    fit = test(level, np.bincount(place).astype(float), np.bincount(place, right), 0.5, None, shape)
+    fit = test(level, np.bincount(place).astype(float), np.bincount(place, right), guess, None, shape)
     return dict(fit, threshold=sign * fit["threshold"])
 
 

@@ -39,7 +39,9 @@ impl Writer<'_> {
             "Mean of each person at each level, and the mean of all people",
             "Moyenne de chaque personne à chaque niveau, et moyenne de toutes les personnes",
         );
-        self.figure(people::person_lines(language, &id, caption, measure.kind, &levels, &people));
+        let factor = self.naming.factor(&factor.name);
+        let levels = (factor.as_str(), levels.as_slice());
+        self.figure(people::person_lines(language, &id, caption, measure.kind, levels, &people));
     }
 
     /// Right answers of each person.
@@ -78,6 +80,7 @@ impl Writer<'_> {
             "Trials were shown in an order of each person’s own, so what changes with the place of a trial is practice or fatigue. The test asks whether people’s own correlations with the place lean one way.",
             "Les essais ont été présentés dans un ordre propre à chaque personne : ce qui change avec le rang d’un essai est un effet d’entraînement ou de fatigue. Le test demande si les corrélations propres aux personnes avec le rang penchent d’un côté.",
         );
+        let mut drawings = Vec::new();
         for measure in measures {
             let place = Numbers {
                 name: "trial_order".to_owned(),
@@ -103,10 +106,13 @@ impl Writer<'_> {
             );
             let id = format!("course-{}", slug(&measure.id));
             let drawing = people::course(language, &id, &caption, measure.kind, &parts);
-            self.figure(drawing);
+            drawings.push(drawing);
             let words = trend_in_words(language, &measure.label, &trend);
             self.blocks.push(Block::Reading(words));
             self.results.course.push(Course { measure: measure.id.clone(), trend });
+        }
+        for drawing in drawings {
+            self.figure(drawing);
         }
     }
 }

@@ -5,7 +5,7 @@ use mimique_stats::{
 };
 use serde::Serialize;
 
-use crate::report::document::{Block, DataTable, slug};
+use crate::report::document::{DataTable, slug};
 use crate::report::figure::{DetectionPanel, DetectionPoints, detection_planes};
 use crate::report::section::Writer;
 use crate::report::section::detection_by_factor::DetectionByFactor;
@@ -66,9 +66,9 @@ impl Writer<'_> {
             "Each category against all others: d′ = z(hits) − z(false alarms) says how well it is told from them, 0 where it is not; c above 0 that it is named rarely, below 0 that it is named often. Rates are log-linear (Hautus 1995). Means are over people with t intervals; where somebody was shown fewer than five of a category, only the answers of all people together are told.",
             "Chaque catégorie contre toutes les autres : d′ = z(détections) − z(fausses alarmes) dit combien elle en est distinguée, 0 si elle ne l’est pas ; c au-dessus de 0 qu’elle est rarement nommée, au-dessous qu’elle l’est souvent. Les taux sont log-linéaires (Hautus 1995). Les moyennes sont sur les personnes, avec des intervalles t ; si quelqu’un a vu moins de cinq extraits d’une catégorie, seules les réponses de toutes les personnes ensemble sont données.",
         );
-        let table = self.detection_table(&result, truth);
-        self.blocks.push(Block::Table(table));
         self.detection_figure(asked, truth, &found);
+        let table = self.detection_table(&result, truth);
+        self.folded_table(table);
         self.roc(asked, truth);
         result.by = self.detection_by_factors(asked, truth, factors);
         self.results.detection.push(result);

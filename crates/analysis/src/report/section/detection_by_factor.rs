@@ -77,18 +77,13 @@ impl Writer<'_> {
             let result = of_factor(&asked.id, factor, &found);
             let shown = self.naming.factor(factor);
             self.heading(3, &format!("d′ by {shown}"), &format!("d′ par {shown}"));
-            let table = self.levels_table(asked, truth, &result);
-            self.blocks.push(Block::Table(table));
-            self.levels_figure(asked, truth, factor, &found);
-            let table = self.compared_table(asked, truth, &result);
-            self.blocks.push(if table.rows.is_empty() {
-                Block::Paragraph(self.language().pick(
+            let tests = self.compared_table(asked, truth, &result);
+            if tests.rows.is_empty() {
+                self.blocks.push(Block::Paragraph(self.language().pick(
                     format!("By {shown} somebody was shown fewer than five of each category at some level: d′ and c are told of all answers together, and the levels are not compared."),
                     format!("Par {shown}, quelqu’un a vu moins de cinq extraits de chaque catégorie à un niveau : d′ et c sont donnés pour toutes les réponses ensemble, et les niveaux ne sont pas comparés."),
-                ))
-            } else {
-                Block::Table(table)
-            });
+                )));
+            }
             let compared = result.categories.iter().filter_map(|own| {
                 let tests = &own.compared.as_ref()?.d_prime;
                 Some((self.naming.level(truth, &own.category), tests))
@@ -97,6 +92,12 @@ impl Writer<'_> {
             if !compared.is_empty() {
                 let words = reading::d_prime_by(&self.naming, factor, &compared);
                 self.blocks.push(Block::Reading(words));
+            }
+            self.levels_figure(asked, truth, factor, &found);
+            let table = self.levels_table(asked, truth, &result);
+            self.folded_table(table);
+            if !tests.rows.is_empty() {
+                self.folded_table(tests);
             }
             results.push(result);
         }
@@ -181,8 +182,8 @@ impl Writer<'_> {
             ),
         );
         let heading = language.pick(
-            ["category", "", "", "test", "p (Holm)", "effect", "difference [95 %]"],
-            ["catégorie", "", "", "test", "p (Holm)", "effet", "différence [95 %]"],
+            ["category", "", "", "test", "p", "p (Holm)", "effect", "difference [95 %]"],
+            ["catégorie", "", "", "test", "p", "p (Holm)", "effet", "différence [95 %]"],
         );
         let id = format!("{}-detection-by-{}-tests", slug(&asked.id), slug(&result.factor));
         let mut table = DataTable::new(id, caption, heading);
@@ -197,9 +198,11 @@ impl Writer<'_> {
                     usize::MAX,
                 );
                 for (label, outcome, difference) in lines {
-                    let [test, p, effect] = tables::cells(language, outcome, true);
+                    let [test, p, effect] = tables::cells(language, outcome);
                     let category = self.naming.level(truth, &own.category);
-                    table.row([category, name.to_owned(), label, test, p, effect, difference]);
+                    let corrected = tables::corrected_cell(language, outcome);
+                    let cells = [category, name.to_owned(), label, test, p, corrected, effect];
+                    table.row(cells.into_iter().chain([difference]));
                 }
             }
         }

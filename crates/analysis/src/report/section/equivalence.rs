@@ -11,11 +11,17 @@ use crate::report::tables;
 use crate::trials::measure::MeasureKind;
 
 impl Writer<'_> {
-    /// The table and the figure of a hypothesis of equivalence; nothing of another one.
-    pub(crate) fn equivalence(&mut self, result: &HypothesisResult) {
+    /// The table of a hypothesis of equivalence; nothing of another one.
+    pub(crate) fn equivalence_tests(&mut self, result: &HypothesisResult) {
+        if let Some(found) = &result.equivalence {
+            let table = self.equivalence_table(result, found);
+            self.blocks.push(Block::Table(table));
+        }
+    }
+
+    /// The intervals of a hypothesis of equivalence in the zone of differences that do not matter.
+    pub(crate) fn equivalence_zone(&mut self, result: &HypothesisResult) {
         let Some(found) = &result.equivalence else { return };
-        let table = self.equivalence_table(result, found);
-        self.blocks.push(Block::Table(table));
         let language = self.language();
         let names = language.pick(
             ["median difference", "mean difference"],
@@ -51,7 +57,9 @@ impl Writer<'_> {
         let differences: Vec<f64> =
             found.differences.iter().map(|value| scaled(result.kind, *value)).collect();
         let zone = scaled(result.kind, found.smallest_effect);
-        let figure = equivalence_zone(language, &id, &caption, zone, &intervals, &differences);
+        let kind = result.kind;
+        let figure =
+            equivalence_zone(language, &id, &caption, kind, zone, &intervals, &differences);
         self.figure(figure);
     }
 
@@ -90,7 +98,7 @@ impl Writer<'_> {
 
     fn equivalence_row(&self, kind: MeasureKind, tests: &OneSidedTests) -> [String; 5] {
         let language = self.language();
-        let [test, p, _] = tables::cells(language, &tests.line, false);
+        let [test, p, _] = tables::cells(language, &tests.line);
         let name = tests.line.clone().ok().map(|line| line.names.in_words[language.pick(0, 1)]);
         let interval = tests.estimate.zip(tests.interval_90).map(|(estimate, [low, high])| {
             let [estimate, low, high] =

@@ -75,7 +75,7 @@ impl<'a> Writer<'a> {
                 format!("{caption} : l’export n’a pas de réponses pour cette table."),
             )));
         } else {
-            self.blocks.push(Block::Table(table));
+            self.folded_table(table);
         }
     }
 

@@ -62,9 +62,18 @@ impl Writer<'_> {
         self.traces(measure, &factors);
         self.comparisons(measure, &factors);
         let Some((first, others)) = factors.split_first() else { return };
-        for second in others {
-            self.interaction(measure, [first, second]);
+        if others.is_empty() {
+            return;
         }
+        let heading = language.pick(
+            format!("Tables: interactions, {}", measure.label),
+            format!("Tableaux : interactions, {}", measure.label),
+        );
+        self.folded(heading, |writer| {
+            for second in others {
+                writer.interaction(measure, [first, second]);
+            }
+        });
     }
 
     /// The factors in use that answers to a question can be told of. Why the others are none of them is
@@ -119,15 +128,36 @@ impl Writer<'_> {
                 format!("{without} essais n’ont pas de valeur de {shown} (leur méthode n’a pas ce paramètre) : ils ne prennent pas part à cette comparaison."),
             )));
         }
+        let words = reading::comparison(&self.naming, &result, &measure.label);
+        self.blocks.push(Block::Reading(words));
         let id = format!("{}-by-{}", slug(&measure.id), slug(name));
-        let table = self.described(measure, factor, &result, format!("{id}-described"));
-        self.blocks.push(Block::Table(table));
         if self.factors.first() == Some(name) {
             self.person_lines(measure, factor);
         }
         if result.recommended.people > 0 && (1..=3).contains(&result.recommended.pairs.len()) {
             self.differences(&result, &format!("{id}-differences"));
         }
+        let heading = language.pick(
+            format!("Tables: {} by {shown}", measure.label),
+            format!("Tableaux : {} par {shown}", measure.label),
+        );
+        self.folded(heading, |writer| writer.comparison_tables(measure, factor, &result, &id));
+        self.results.comparisons.push(result);
+    }
+
+    /// How answers lie at each level, and every test of the levels.
+    fn comparison_tables(
+        &mut self,
+        measure: &Measure,
+        factor: &Factor,
+        result: &Comparison,
+        id: &str,
+    ) {
+        let language = self.language();
+        let name = &factor.name;
+        let shown = self.naming.factor(name);
+        let table = self.described(measure, factor, result, format!("{id}-described"));
+        self.blocks.push(Block::Table(table));
         let table = tables::two_columns(
             &self.naming,
             format!("{id}-tests"),
@@ -145,9 +175,6 @@ impl Writer<'_> {
         let people = &result.recommended;
         let pairs = tables::many_pairs(&self.naming, pairs_id, name, measure.kind, people);
         self.blocks.extend(pairs.map(Block::Table));
-        let words = reading::comparison(&self.naming, &result, &measure.label);
-        self.blocks.push(Block::Reading(words));
-        self.results.comparisons.push(result);
     }
 
     /// What the levels look like: shares of right answers, or how answers lie.
@@ -185,7 +212,7 @@ impl Writer<'_> {
             "Difference of each person’s means, with the Hodges-Lehmann estimate and its 95 % interval",
             "Différence des moyennes de chaque personne, avec l’estimation de Hodges-Lehmann et son intervalle à 95 %",
         );
-        self.figure(figure::differences(language, id, caption, &pairs));
+        self.figure(figure::differences(language, id, caption, result.kind, &pairs));
     }
 
     fn interaction(&mut self, measure: &Measure, names: [&str; 2]) {
@@ -199,7 +226,6 @@ impl Writer<'_> {
             TrialLevel::new(TestLine::scheirer_ray_hare(&measure.numbers(), both, &Unit::Trials));
         let people = person_level::two_way(self.export, measure, both);
         let shown = names.map(|name| self.naming.factor(name)).join(" × ");
-        self.blocks.push(Block::Heading(3, shown.clone()));
         let table = tables::two_columns(
             &self.naming,
             format!("{}-{}-{}", slug(&measure.id), slug(names[0]), slug(names[1])),

@@ -5,6 +5,7 @@ pub(crate) mod choice_reasons;
 pub(crate) mod choice_tests;
 pub(crate) mod choices;
 pub(crate) mod course;
+pub(crate) mod decisions;
 pub(crate) mod detection;
 pub(crate) mod detection_by_factor;
 pub(crate) mod equivalence;
@@ -15,6 +16,7 @@ pub(crate) mod measures;
 pub(crate) mod notes;
 pub(crate) mod other_clips;
 pub(crate) mod panels;
+pub(crate) mod paper;
 pub(crate) mod people;
 pub(crate) mod recognition;
 pub(crate) mod roc;
@@ -33,7 +35,7 @@ use crate::hypothesis::HypothesisResult;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::report::ReportFile;
-use crate::report::document::{Block, Document, Figure};
+use crate::report::document::{Block, DataTable, Document, Figure};
 use crate::report::replay;
 use crate::report::results::Results;
 use crate::report::section::hypotheses::tested;
@@ -110,6 +112,7 @@ pub(crate) fn write(
     for part in parts {
         writer.append(part);
     }
+    writer.paper(&hypotheses);
     writer.results.hypotheses = hypotheses;
     writer.notes();
 
@@ -287,6 +290,21 @@ impl Writer<'_> {
     pub(crate) fn paragraph(&mut self, english: &str, french: &str) {
         let text = self.language().pick(english, french).to_owned();
         self.blocks.push(Block::Paragraph(text));
+    }
+
+    /// What `write` writes, behind a heading.
+    pub(crate) fn folded(&mut self, heading: String, write: impl FnOnce(&mut Self)) {
+        let before = std::mem::take(&mut self.blocks);
+        write(self);
+        let own = std::mem::replace(&mut self.blocks, before);
+        if !own.is_empty() {
+            self.blocks.push(Block::Folded(heading, own));
+        }
+    }
+
+    /// A table behind its caption.
+    pub(crate) fn folded_table(&mut self, table: DataTable) {
+        self.blocks.push(Block::Folded(table.caption.clone(), vec![Block::Table(table)]));
     }
 
     /// Adds a figure whose own label is its description.

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::hypothesis::reading;
 use crate::report::document::Block;
 use crate::report::section::Writer;
 
@@ -25,6 +26,7 @@ impl Writer<'_> {
                 "Choix entre deux extraits : pour deux niveaux, test du signe exact sur les personnes (si davantage choisissent l’un plus souvent que l’autre ; qui choisit les deux aussi souvent n’est pas compté). Au-delà, valeurs selon le modèle de Bradley et Terry, avec les égalités de Davidson si « pas de différence » était une réponse et un biais de côté si les côtés variaient : égalité des valeurs par le F de Wald à covariance groupée par participant, avec peu de personnes par le test de Friedman sur les victoires de chacune ; paires par t groupé par participant, correction de Holm ; intervalles par tirage de participants. Une différence juste perceptible (JND) est ln 3 de valeur : 75 % des choix tranchés. Pour des réponses indépendantes : test du signe sur les essais, rapport de vraisemblance.",
             );
         }
+        self.blocks.push(Block::Paragraph(reading::no_proof(language).to_owned()));
         self.paragraph(
             "Effect sizes: r is the matched rank-biserial correlation, W Kendall’s coefficient of concordance, V Cramér’s, ε² is H / (n − 1) of Kruskal-Wallis, η²H the same of Scheirer-Ray-Hare (SRH), ηp² the partial eta squared of the aligned rank transform (ART).",
             "Tailles d’effet : r est la corrélation bisériale des rangs appariés, W le coefficient de concordance de Kendall, V celui de Cramér, ε² est H / (n − 1) de Kruskal-Wallis, η²H le même de Scheirer-Ray-Hare (SRH), ηp² l’êta carré partiel de la transformation des rangs alignés (ART).",

@@ -15,7 +15,6 @@ impl Writer<'_> {
         let language = self.language();
         self.heading(2, "Participants", "Participants");
         let flow = flow_chart(language, &self.export.flow);
-        self.figure(flow);
         if self.export.flow.rules.is_empty() {
             self.paragraph(
                 "The study file sets no rule of exclusion; only withdrawn and pilot sessions are left out.",
@@ -28,6 +27,7 @@ impl Writer<'_> {
                 format!("Règles d’exclusion, fixées dans le fichier de l’étude : {rules}."),
             )));
         }
+        self.figure(flow);
         let caption = match self.study.conditions().is_empty() {
             true => language.pick(
                 "Answers of the people in the analysis about themselves",

@@ -44,7 +44,7 @@ impl Writer<'_> {
             format!("Chaque catégorie contre toutes les autres : les réponses qui la nomment, de la plus sûre à la moins sûre, puis celles qui en nomment une autre, de la moins sûre à la plus sûre. La courbe a les proportions de détections et de fausses alarmes jusqu’à chacune de ces places ; l’aire sous elle est la probabilité qu’une réponse à la catégorie soit placée au-dessus d’une réponse à une autre (U de Mann et Whitney, ex æquo comptés pour moitié), 0,5 si rien n’est distingué. {n} réponses, {dropped} sans note `{confidence}`. Les moyennes sont sur les personnes, avec des intervalles t ; si quelqu’un a vu moins de cinq extraits d’une catégorie, seules les réponses de toutes les personnes ensemble sont données."),
         )));
         let table = self.areas_table(asked, truth, &found);
-        self.blocks.push(Block::Table(table));
+        self.folded_table(table);
         let curves = found.categories.iter().filter_map(|own| {
             let curve = own.pooled.clone().ok()?;
             Some((self.naming.level(truth, &own.category), curve))

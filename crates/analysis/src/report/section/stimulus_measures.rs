@@ -92,7 +92,7 @@ impl Writer<'_> {
                 found.iter().filter(|each| each.response == measure.id).collect();
             if !own.is_empty() {
                 self.figure(scattered(language, measure, &own));
-                self.blocks.push(Block::Table(correlation_table(language, measure, &own)));
+                self.folded_table(correlation_table(language, measure, &own));
             }
         }
         self.results.stimulus_measures = found;

@@ -36,13 +36,13 @@ impl Writer<'_> {
                 format!("Temps de la première image à la dernière réponse à « {} » : médiane, quartiles, 5e et 95e centiles", asked.label("fr")),
             );
             let unit = language.pick("seconds", "secondes");
-            self.figure(figure::boxes(language, "response-times", &caption, unit, &rows));
             if factor.levels.len() > 1 && measure.kind == MeasureKind::ResponseTime {
                 let result = within(self.export, &measure, &factor);
                 let words = reading::comparison(&self.naming, &result, &measure.label);
                 self.blocks.push(Block::Reading(words));
                 self.results.comparisons.push(result);
             }
+            self.figure(figure::boxes(language, "response-times", &caption, unit, &rows));
         }
         self.late_frames(&first);
     }
@@ -77,7 +77,7 @@ impl Writer<'_> {
             ]);
             self.results.late_frames.push(result);
         }
-        self.blocks.push(Block::Table(table));
+        self.folded_table(table);
         self.late_shares(&factor);
     }
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::hypothesis::reading::LEVEL;
 use crate::hypothesis::undefined::Why;
-use crate::report::document::{Block, DataTable, slug};
+use crate::report::document::{DataTable, slug};
 use crate::report::section::Writer;
 use crate::trials::measure::Measure;
 
@@ -167,7 +167,7 @@ impl Writer<'_> {
                 ]);
             }
         }
-        self.blocks.push(Block::Table(table));
+        self.folded_table(table);
     }
 }
 

@@ -9,6 +9,7 @@ use mimique_storage::{SessionRecord, Storage};
 
 use super::figures::{self, Counted, Frames, Stop, Times, standing_at};
 use super::kept::{AllCounted, Sums};
+use super::pace::Pace;
 use super::session_sums::SessionSums;
 use super::tally::{Distribution, distributions};
 use crate::clock::now_ms;
@@ -23,6 +24,8 @@ pub(crate) const ON_A_PAGE: usize = 100;
 /// What the page shows of a study.
 pub(crate) struct Overview {
     pub listed: Listed,
+    /// How far the study is, in its stage.
+    pub pace: Pace,
     /// How many participants are excluded.
     pub excluded: usize,
     /// Sessions of which newer events are not counted yet.
@@ -93,6 +96,14 @@ impl Overview {
             let stands_so = |counted: &&Counted| standing_at(&counted.0, now_ms) == standing;
             (standing, sessions.iter().filter(stands_so).count())
         });
+        let stage = study.stage().word();
+        let done = sessions.iter().filter(|(session, _)| {
+            session.standing == Standing::Completed && session.stage == stage
+        });
+        let ended: Vec<i64> = done.map(|(session, _)| session.ended_ms.unwrap_or(now_ms)).collect();
+        let places = study.study().recruitment.participants;
+        let places = places.and_then(|places| usize::try_from(places).ok());
+        let pace = Pace::of(&ended, places, now_ms);
         let excluded = exclusions(storage, study.id()).await?;
         // Whoever is excluded counts in no figure but the number of participants.
         let kept = || sessions.iter().filter(|(session, _)| !excluded.contains_key(&session.key));
@@ -110,6 +121,7 @@ impl Overview {
         let listed = listed(storage, study, &sessions, &excluded, wanted, now_ms).await?;
         Ok(Self {
             listed,
+            pace,
             excluded: excluded.len(),
             behind,
             standings: standings.to_vec(),

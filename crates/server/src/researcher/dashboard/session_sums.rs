@@ -6,7 +6,9 @@ use mimique_session::Record;
 use mimique_session::flow::{Plan, StepKind};
 use mimique_session::rows::TidyForm;
 use mimique_storage::{CountedEvent, SessionRecord, Storage, StorageError};
-use mimique_study::{PairCounts, PairsComponent, Study, StudyProjection, component_of};
+use mimique_study::{
+    FactorValue, PairCounts, PairsComponent, Study, StudyProjection, component_of,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tokio_stream::StreamExt as _;
@@ -16,7 +18,7 @@ use crate::export::sources::{Version, as_started};
 
 /// The form of the sums that are kept of a session, and of what they are made by. Whoever changes either counts it up:
 /// what was kept in another form is made anew.
-pub const FORM: i64 = 3;
+pub const FORM: i64 = 4;
 
 /// What is counted of one session. No text that was written is in it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -27,7 +29,7 @@ pub(crate) struct SessionSums {
     pub step: String,
     /// Answers of every finished page and trial, practice left out, by response.
     pub answers: BTreeMap<String, Tally>,
-    /// Finished trials by factor and level.
+    /// Clips shown in finished trials, by factor and level: both of a pair.
     pub levels: BTreeMap<String, BTreeMap<String, u64>>,
     /// Place of every finished trial, practice left out, and how long it took, milliseconds.
     pub trials: Vec<(u64, Option<f64>)>,
@@ -50,6 +52,8 @@ pub(crate) struct Counter {
     form: TidyForm,
     /// How answers to each response are counted.
     counting: BTreeMap<String, Counting>,
+    /// Levels of the factors of each clip, which may stand beside another.
+    levels: BTreeMap<String, BTreeMap<String, String>>,
     /// The question that chooses, by block of pairs.
     choices: BTreeMap<String, String>,
     places: Places,
@@ -60,6 +64,7 @@ struct Places {
     trial_type: usize,
     trial_id: usize,
     trial_order: usize,
+    beside: usize,
     response_id: usize,
     answer: usize,
     /// Where the study has blocks of pairs: the levels left and right, and the chosen one.
@@ -83,6 +88,7 @@ impl Places {
             trial_type: place("trial_type")?,
             trial_id: place("trial_id")?,
             trial_order: place("trial_order")?,
+            beside: place("beside")?,
             response_id: place("response_id")?,
             answer: place("answer")?,
             items: place("item_left")
@@ -110,7 +116,19 @@ impl Counter {
         let counting = Counting::of(&version.study);
         let of = |(name, block): (&str, PairsComponent)| (name.to_owned(), block.question);
         let choices = version.study.pair_blocks().map(of).collect();
-        Some(Self { projection: version.study.projection(), form, counting, choices, places })
+        let level = |(name, level): (&String, &FactorValue)| (name.clone(), level.to_string());
+        let clips = version.study.clips();
+        let levels =
+            clips.iter().map(|clip| (clip.id.clone(), clip.factors.iter().map(level).collect()));
+        let levels = levels.collect();
+        Some(Self {
+            projection: version.study.projection(),
+            form,
+            counting,
+            levels,
+            choices,
+            places,
+        })
     }
 
     /// The sums of a session, whose events are read one by one.
@@ -197,14 +215,18 @@ impl Counter {
                 sums.trials.push((count(places.trial_order), duration_ms));
                 sums.frames += count(places.frames);
                 sums.late += count(places.frames_late);
+                let beside = self.levels.get(text(places.beside));
                 for (factor, place) in &places.factors {
-                    let level = match &row[*place] {
-                        Value::Null => continue,
-                        Value::String(level) => level.clone(),
-                        other => other.to_string(),
+                    let own = match &row[*place] {
+                        Value::Null => None,
+                        Value::String(level) => Some(level.clone()),
+                        other => Some(other.to_string()),
                     };
-                    let levels = sums.levels.entry(factor.clone()).or_default();
-                    *levels.entry(level).or_default() += 1;
+                    let other = beside.and_then(|beside| beside.get(factor)).cloned();
+                    for level in own.into_iter().chain(other) {
+                        let levels = sums.levels.entry(factor.clone()).or_default();
+                        *levels.entry(level).or_default() += 1;
+                    }
                 }
             }
         }

@@ -182,6 +182,12 @@ pub(crate) fn time(at_ms: Option<i64>) -> Markup {
     html! { time datetime=(text) { (short) " UTC" } }
 }
 
+/// The day of a time; the page's script writes it as the reader does.
+pub(crate) fn day(at_ms: i64) -> Markup {
+    let text = iso_time(at_ms as f64);
+    html! { time datetime=(text) data-day="" { (text.get(..10).unwrap_or_default()) } }
+}
+
 /// A text as part of an address's query.
 pub(crate) fn escaped(text: &str) -> String {
     crate::state::hosted_study::percent_encoded(text)

@@ -54,6 +54,8 @@ pub(crate) fn study_page(
                 a href={ "/s/" (id) "/" } { (frame.say("participant’s page", "page des participants")) }
                 " · "
                 a href={ "/preview/" (id) } { (frame.say("preview of the stimuli", "aperçu des stimuli")) }
+                " · "
+                a href="/studio" { (frame.say("studio", "studio")) }
             }
             @if let Some(overdue) = &hosting.overdue { (actions::overdue(frame, id, overdue)) }
             @if frame.may(Role::Analyst) { (exports(frame, id)) }
@@ -64,7 +66,8 @@ pub(crate) fn study_page(
             data-on=(frame.say("Live: the page follows what happens.", "En direct : la page suit ce qui se passe."))
             data-off=(frame.say("Not connected: trying again.", "Non connecté : nouvel essai.")) {}
         div data-live={ (address) "/live" } {
-            (counts(frame, study, overview))
+            (progress::pace(frame, &overview.pace))
+            (counts(frame, overview))
             @if overview.behind > 0 { (behind(frame, overview.behind)) }
             (participants(frame, id, &overview.listed))
             @if !overview.conditions.is_empty() { (conditions(frame, overview)) }
@@ -104,7 +107,7 @@ fn behind(frame: &Frame, sessions: usize) -> Markup {
 }
 
 /// How many participants there are of each standing.
-fn counts(frame: &Frame, study: &HostedStudy, overview: &Overview) -> Markup {
+fn counts(frame: &Frame, overview: &Overview) -> Markup {
     html! {
         dl.counts {
             @for (standing, count) in &overview.standings {
@@ -112,9 +115,6 @@ fn counts(frame: &Frame, study: &HostedStudy, overview: &Overview) -> Markup {
             }
             @if overview.excluded > 0 {
                 div { dt { (frame.say("excluded", "exclus")) } dd { (overview.excluded) } }
-            }
-            @if let Some(wanted) = study.study().recruitment.participants {
-                div { dt { (frame.say("wanted", "prévus")) } dd { (wanted) } }
             }
         }
     }

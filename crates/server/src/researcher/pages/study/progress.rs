@@ -1,12 +1,42 @@
-//! How far people are: the conditions they were given, the pages they are on and those they leave.
+//! How far the study and its people are: the conditions they were given, the pages they are on and those they leave.
 
 use maud::{Markup, html};
 use mimique_session::Standing;
 
+use super::bars::round;
 use crate::researcher::dashboard::figures::{Stop, StopLabel};
 use crate::researcher::dashboard::overview::Overview;
-use crate::researcher::pages::frame::Frame;
+use crate::researcher::dashboard::pace::Pace;
+use crate::researcher::pages::frame::{Frame, day};
 use crate::researcher::pages::standing_words::standing_word;
+
+/// How many are done of how many are wanted, and when the study will be full at this pace.
+pub(super) fn pace(frame: &Frame, pace: &Pace) -> Markup {
+    let Pace { done, wanted, per_day, full_ms } = *pace;
+    html! {
+        p.pace {
+            strong {
+                (done)
+                @if let Some(wanted) = wanted { (frame.say(" of ", " sur ")) (wanted) }
+                @if done == 1 && wanted.is_none() {
+                    (frame.say(" person has completed the study", " personne a terminé l’étude"))
+                } @else {
+                    (frame.say(" people have completed the study", " personnes ont terminé l’étude"))
+                }
+            }
+            @if let Some(wanted) = wanted {
+                " " progress aria-hidden="true" max=(wanted.max(1)) value=(done.min(wanted)) {}
+            }
+            @if let Some(per_day) = per_day {
+                (frame.say("; lately ", " ; dernièrement ")) (round(per_day)) (frame.say(" per day", " par jour"))
+            }
+            @if let Some(full_ms) = full_ms {
+                (frame.say(": full about ", " : complète vers le ")) (day(full_ms))
+            }
+            "."
+        }
+    }
+}
 
 /// How many there are in each condition between participants.
 pub(super) fn conditions(frame: &Frame, overview: &Overview) -> Markup {

@@ -14,8 +14,8 @@ pub(super) fn balance(frame: &Frame, overview: &Overview) -> Markup {
             h2 { (frame.say("Condition balance", "Équilibre des conditions")) }
             p.soft {
                 (frame.say(
-                    "Finished trials of participants who completed the study.",
-                    "Essais finis des participants qui ont terminé l’étude.",
+                    "Clips in finished trials of participants who completed the study, both of a pair.",
+                    "Extraits des essais finis des participants qui ont terminé l’étude, les deux d’une paire.",
                 ))
             }
             div.distributions {

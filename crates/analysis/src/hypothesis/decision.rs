@@ -1,0 +1,142 @@
+//! What a hypothesis comes to: whether something was shown after the correction over all hypotheses, and how large it
+//! is.
+
+use mimique_stats::{EquivalenceVerdict, Outcome};
+use mimique_study::TestName;
+
+use crate::hypothesis::HypothesisResult;
+use crate::hypothesis::is_two_way;
+use crate::hypothesis::reading::LEVEL;
+use crate::trials::measure::MeasureKind;
+
+/// More pairs of levels than this have no place in a row.
+const MOST_PAIRS: usize = 3;
+
+/// What is shown or not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sought {
+    /// That levels differ.
+    Difference,
+    /// That the effect of one factor depends on another.
+    Interaction,
+    /// That one number goes with another.
+    Relation,
+}
+
+/// What the deciding test says, after the correction over all hypotheses of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decision {
+    /// It was shown.
+    Shown(Sought),
+    /// It was not shown, which is no proof that it is not so.
+    NotShown(Sought),
+    /// Of a test of equivalence.
+    Equivalence(EquivalenceVerdict),
+    /// No test decides.
+    NotTested,
+}
+
+/// In which unit an effect is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum EffectUnit {
+    /// Points of a scale.
+    Points,
+    /// Shares of right answers.
+    Shares,
+    /// Seconds.
+    Seconds,
+    /// Odds of a higher rating.
+    Odds,
+}
+
+impl EffectUnit {
+    /// How far a value lies from no difference, on the scale on which intervals are drawn.
+    pub(crate) fn drawn(self, value: f64) -> f64 {
+        if self == Self::Odds { value.ln() } else { value }
+    }
+}
+
+/// The difference between two levels with its interval.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Effect<'r> {
+    /// The first less the second; of odds, the first against the second.
+    pub levels: [&'r str; 2],
+    pub estimate: f64,
+    pub interval: [f64; 2],
+    /// Percent that the interval covers.
+    pub covers: u8,
+    pub unit: EffectUnit,
+    /// Differences of less than this do not matter.
+    pub smallest: Option<f64>,
+}
+
+/// What a hypothesis comes to.
+pub(crate) fn decision(result: &HypothesisResult) -> Decision {
+    let Some(p) = result.p_holm_over_hypotheses.or(result.p) else { return Decision::NotTested };
+    if let Some(found) = &result.equivalence {
+        let p_difference = found.decides.p_difference.unwrap_or(1.0);
+        return Decision::Equivalence(EquivalenceVerdict::of(p, p_difference, LEVEL));
+    }
+    let sought = match result.test {
+        test if is_two_way(test) => Sought::Interaction,
+        TestName::Spearman => Sought::Relation,
+        _ => Sought::Difference,
+    };
+    if p < LEVEL { Decision::Shown(sought) } else { Decision::NotShown(sought) }
+}
+
+/// The differences that a row has room for: those of few pairs, by the test that decides.
+pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
+    let unit = match result.kind {
+        MeasureKind::Rating | MeasureKind::Choice => EffectUnit::Points,
+        MeasureKind::Recognition => EffectUnit::Shares,
+        MeasureKind::ResponseTime => EffectUnit::Seconds,
+    };
+    if let Some(found) = &result.equivalence {
+        let own = [&found.decides, &found.beside].into_iter().find(|own| own.interval_90.is_some());
+        let [a, b] = &found.levels;
+        let effect = own.and_then(|own| {
+            Some(Effect {
+                levels: [a, b],
+                estimate: own.estimate?,
+                interval: own.interval_90?,
+                covers: 90,
+                unit,
+                smallest: Some(found.smallest_effect),
+            })
+        });
+        return effect.into_iter().collect();
+    }
+    let model = result.other_clips.as_ref().filter(|found| found.decides);
+    if let Some(Some(Outcome::Ok(model))) = model.map(|found| &found.mixed_model) {
+        // The model's odds are those at the second level.
+        let pairs = model.pairs.iter().filter(|_| model.pairs.len() <= MOST_PAIRS);
+        return pairs
+            .map(|pair| {
+                let [low, high] = pair.interval_95;
+                Effect {
+                    levels: [&pair.a, &pair.b],
+                    estimate: 1.0 / pair.odds_ratio,
+                    interval: [1.0 / high, 1.0 / low],
+                    covers: 95,
+                    unit: EffectUnit::Odds,
+                    smallest: None,
+                }
+            })
+            .collect();
+    }
+    let pairs = &result.recommended.pairs;
+    let few = pairs.iter().filter(|_| pairs.len() <= MOST_PAIRS);
+    few.filter_map(|pair| {
+        let found = pair.difference?;
+        Some(Effect {
+            levels: [&pair.a, &pair.b],
+            estimate: found.estimate,
+            interval: [found.ci_low, found.ci_high],
+            covers: 95,
+            unit,
+            smallest: None,
+        })
+    })
+    .collect()
+}

@@ -1,0 +1,43 @@
+//! What a hypothesis comes to, in two or three words.
+
+use super::verdict;
+use crate::hypothesis::decision::{Decision, Sought};
+use crate::language::Language;
+
+/// A shape that says the same as the words, without colour: filled where something was shown.
+pub(crate) fn mark(decision: Decision) -> &'static str {
+    use mimique_stats::EquivalenceVerdict as Verdict;
+    match decision {
+        Decision::Shown(_) | Decision::Equivalence(Verdict::Different) => "●",
+        Decision::Equivalence(Verdict::Equivalent) => "■",
+        Decision::Equivalence(Verdict::DifferentButSmall) => "◐",
+        Decision::NotShown(_) | Decision::Equivalence(Verdict::Undecided) => "○",
+        Decision::NotTested => "–",
+    }
+}
+
+/// The decision in words.
+pub(crate) fn decision(language: Language, decision: Decision) -> &'static str {
+    match decision {
+        Decision::Shown(Sought::Difference) => {
+            language.pick("a difference was shown", "une différence a été montrée")
+        }
+        Decision::NotShown(Sought::Difference) => {
+            language.pick("no difference was shown", "aucune différence n’a été montrée")
+        }
+        Decision::Shown(Sought::Interaction) => {
+            language.pick("an interaction was shown", "une interaction a été montrée")
+        }
+        Decision::NotShown(Sought::Interaction) => {
+            language.pick("no interaction was shown", "aucune interaction n’a été montrée")
+        }
+        Decision::Shown(Sought::Relation) => {
+            language.pick("a correlation was shown", "une corrélation a été montrée")
+        }
+        Decision::NotShown(Sought::Relation) => {
+            language.pick("no correlation was shown", "aucune corrélation n’a été montrée")
+        }
+        Decision::Equivalence(found) => verdict(language, found),
+        Decision::NotTested => language.pick("not tested", "non testée"),
+    }
+}

@@ -1,0 +1,179 @@
+//! What comes first in a report: who took part, and what every hypothesis found, a row each.
+
+use mimique_stats::Outcome;
+
+use crate::hypothesis::HypothesisResult;
+use crate::hypothesis::decision::{Decision, Effect, EffectUnit, decision, effects};
+use crate::hypothesis::reading;
+use crate::report::document::{Block, DataTable, DecisionTable};
+use crate::report::figure::flow_chart::flow_in_words;
+use crate::report::figure::{DrawnInterval, forest_row};
+use crate::report::section::Writer;
+
+impl Writer<'_> {
+    /// Who took part, and what the hypotheses found.
+    pub(crate) fn in_short(&mut self, hypotheses: &[HypothesisResult]) {
+        let language = self.language();
+        self.heading(2, "In short", "En bref");
+        let flow = flow_in_words(language, &self.export.flow);
+        self.blocks.push(Block::Paragraph(flow));
+        if hypotheses.is_empty() {
+            self.paragraph(
+                "The study file states no hypothesis; every comparison below is exploratory.",
+                "Le fichier de l’étude n’énonce aucune hypothèse ; toutes les comparaisons ci-dessous sont exploratoires.",
+            );
+        } else {
+            let decisions = self.decisions(hypotheses);
+            self.blocks.push(Block::Decisions(decisions));
+        }
+        let n = self.export.flow.people_used;
+        if n < 6 {
+            self.blocks.push(Block::Caution(language.pick(
+                format!("With {n} people in the analysis no paired test can reach p < 0.05: six are the least, and most effects need many more. Take what follows as a trial run of the analysis."),
+                format!("Avec {n} personnes dans l’analyse, aucun test apparié ne peut atteindre p < 0,05 : il en faut au moins six, et la plupart des effets en demandent bien plus. Considérez ce qui suit comme un essai de l’analyse."),
+            )));
+        }
+    }
+
+    /// A row per hypothesis.
+    fn decisions(&self, hypotheses: &[HypothesisResult]) -> DecisionTable {
+        let language = self.language();
+        let tested = hypotheses.iter().filter(|result| result.p.is_some()).count();
+        let p = match tested {
+            0 | 1 => "p".to_owned(),
+            _ => language.pick(
+                format!("p, corrected for {tested} hypotheses (Holm)"),
+                format!("p, corrigé pour {tested} hypothèses (Holm)"),
+            ),
+        };
+        let columns = language.pick(
+            ["hypothesis", "decision", "difference [95 %], or effect size", "people"],
+            ["hypothèse", "décision", "différence [95 %] ou taille d’effet", "personnes"],
+        );
+        let [hypothesis, decided, effect, people] = columns.map(str::to_owned);
+        let caption = language.pick("What the hypotheses found", "Ce que donnent les hypothèses");
+        let mut table = DecisionTable {
+            data: DataTable::new("hypotheses", caption, [hypothesis, decided, effect, p, people]),
+            ..DecisionTable::default()
+        };
+        let all: Vec<Vec<Effect<'_>>> = hypotheses.iter().map(effects).collect();
+        let edge = |unit: EffectUnit| {
+            let own = all.iter().flatten().filter(|effect| effect.unit == unit);
+            let ends = own.flat_map(|effect| {
+                let smallest = effect.smallest.unwrap_or(0.0);
+                effect.interval.map(|end| unit.drawn(end).abs().max(smallest))
+            });
+            ends.filter(|end| end.is_finite()).fold(0.0, f64::max)
+        };
+        for (result, own) in hypotheses.iter().zip(&all) {
+            let factor = result.factors.first().map_or("", String::as_str);
+            let lines: Vec<String> = match own.as_slice() {
+                [] => effect_size(self, result).into_iter().collect(),
+                own => own.iter().map(|effect| self.effect_in_words(factor, effect)).collect(),
+            };
+            let found = decision(result);
+            let p = match result.p_holm_over_hypotheses.or(result.p) {
+                Some(p) => language.p_rounded(p),
+                None => "–".to_owned(),
+            };
+            let people = match result.recommended.people {
+                0 => "–".to_owned(),
+                people => people.to_string(),
+            };
+            table.data.row([
+                format!("{}. {}", result.id, result.statement),
+                format!("{} {}", reading::mark(found), reading::decision(language, found)),
+                lines.join("; "),
+                p,
+                people,
+            ]);
+            let drawn = own.iter().map(|effect| {
+                let edge = edge(effect.unit).max(f64::MIN_POSITIVE);
+                let place = |value: f64| effect.unit.drawn(value) / edge;
+                DrawnInterval {
+                    estimate: place(effect.estimate),
+                    ends: effect.interval.map(place),
+                    zone: effect.smallest.map(|smallest| smallest / edge),
+                }
+            });
+            let drawn: Vec<DrawnInterval> = drawn.collect();
+            let drawing = (!drawn.is_empty()).then(|| forest_row(&drawn, &lines.join("; ")));
+            table.drawings.push(drawing);
+            table.effects.push(lines);
+        }
+        table.scale = self.scale_in_words(&all, edge);
+        let open =
+            hypotheses.iter().any(|result| matches!(decision(result), Decision::NotShown(_)));
+        if open {
+            table.scale.push(' ');
+            table.scale += reading::no_proof(language);
+        }
+        table
+    }
+
+    fn effect_in_words(&self, factor: &str, effect: &Effect<'_>) -> String {
+        let language = self.language();
+        let [a, b] = effect.levels;
+        let number = |value: f64| match effect.unit {
+            EffectUnit::Shares => language.fixed(value * 100.0, 1),
+            EffectUnit::Points | EffectUnit::Seconds => language.fixed(value, 2),
+            EffectUnit::Odds => language.fixed(value, 1),
+        };
+        let unit = match effect.unit {
+            EffectUnit::Shares => language.pick(" percentage points", " points de pourcentage"),
+            EffectUnit::Seconds => " s",
+            EffectUnit::Points => "",
+            EffectUnit::Odds => language.pick(" times the odds", " fois les chances"),
+        };
+        let [low, high] = effect.interval.map(number);
+        let covers = match effect.covers {
+            95 => String::new(),
+            covers => format!("{covers} %: "),
+        };
+        let pair = self.naming.pair(factor, a, b);
+        let colon = language.pick(":", " :");
+        format!("{pair}{colon} {}{unit} [{covers}{low}; {high}]", number(effect.estimate))
+    }
+
+    /// How wide the drawings are, in the units that are drawn.
+    fn scale_in_words(&self, all: &[Vec<Effect<'_>>], edge: impl Fn(EffectUnit) -> f64) -> String {
+        let language = self.language();
+        let mut units: Vec<EffectUnit> = all.iter().flatten().map(|effect| effect.unit).collect();
+        units.sort_unstable();
+        units.dedup();
+        let ranges: Vec<String> = units
+            .into_iter()
+            .map(|unit| match (unit, edge(unit)) {
+                (EffectUnit::Points, edge) => language.pick(
+                    format!("±{} points of the scale", language.fixed(edge, 2)),
+                    format!("±{} points de l’échelle", language.fixed(edge, 2)),
+                ),
+                (EffectUnit::Shares, edge) => language.pick(
+                    format!("±{} percentage points", language.fixed(edge * 100.0, 1)),
+                    format!("±{} points de pourcentage", language.fixed(edge * 100.0, 1)),
+                ),
+                (EffectUnit::Seconds, edge) => format!("±{} s", language.fixed(edge, 2)),
+                (EffectUnit::Odds, edge) => language.pick(
+                    format!("odds from 1/{0} to {0}", language.fixed(edge.exp(), 1)),
+                    format!("chances de 1/{0} à {0}", language.fixed(edge.exp(), 1)),
+                ),
+            })
+            .collect();
+        if ranges.is_empty() {
+            return String::new();
+        }
+        let ranges = ranges.join(language.pick(", ", ", "));
+        language.pick(
+            format!("Intervals are drawn around the line of no difference, to the edges at {ranges}."),
+            format!("Les intervalles sont dessinés autour de la ligne d’une différence nulle, jusqu’aux bords à {ranges}."),
+        )
+    }
+}
+
+/// The effect size of the test that decides, where there is no difference of two levels to tell.
+fn effect_size(writer: &Writer<'_>, result: &HypothesisResult) -> Option<String> {
+    let language = writer.language();
+    let Outcome::Ok(line) = result.recommended.overall.last()? else { return None };
+    let effect = line.row.effect?;
+    Some(format!("{} = {}", line.names.effect_symbol, language.fixed(effect, 2)))
+}
