@@ -16,11 +16,30 @@ const unable = skip(!executable && "Chromium not found");
 
 // This person tells every level from here on.
 const SEEN_FROM = 0.55;
-const RELOADED_AT = 4;
 
-const study = small("levels", {
+// Which of the two clips is the varied one; or whether they differ, and some trials show no difference.
+const ASKED = {
+  "left or right": {
+    question: { id: "smoother", type: "comparison", prompt: text("Which one is smoother?") },
+    block: { trials: 8 },
+    trials: 8,
+    // Where the other clip stands left, the varied one stands right.
+    answer: ({ level, left }) => (level >= SEEN_FROM === left ? "right" : "left"),
+    right: ({ level }) => level >= SEEN_FROM,
+    reloadedAt: 4,
+  },
+  "yes or no": {
+    question: { id: "differ", type: "singleChoice", prompt: text("Do they differ?"), options: [{ value: "no", label: text("No") }, { value: "yes", label: text("Yes") }] },
+    block: { trials: 5, yes: "yes", catch: 0.2 },
+    trials: 6,
+    answer: ({ level }) => (level >= SEEN_FROM ? "yes" : "no"),
+    right: ({ level, isCatch }) => isCatch || level >= SEEN_FROM,
+  },
+};
+
+const study = ({ question, block }) => small("levels", {
   seed: 7,
-  questions: [{ id: "smoother", type: "comparison", prompt: text("Which one is smoother?") }],
+  questions: [question],
   components: {
     limit: {
       type: "adaptive",
@@ -28,8 +47,8 @@ const study = small("levels", {
       method: "lsts",
       against: "none",
       rule: { questPlus: { threshold: [0.1, 0.9, 9], spread: [0.05, 0.1] } },
-      trials: 8,
-      question: "smoother",
+      question: question.id,
+      ...block,
     },
   },
   sequence: { order: "fixed", components: ["limit"] },
@@ -43,14 +62,14 @@ const study = small("levels", {
 // The levels that were chosen so far, one a trial.
 const chosen = async (page, server) => (await storedEvents(page, server, "levels")).filter(({ type }) => type === "level_chosen");
 
-test("adaptive: levels follow the answers, and a reload goes on at the same level", { skip: unable, timeout: 600_000 }, async () => {
+for (const [name, asked] of Object.entries(ASKED)) test(`adaptive: levels follow the answers, ${name}`, { skip: unable, timeout: 600_000 }, async () => {
   const folder = mkdtempSync(join(tmpdir(), "mimique-levels-"));
-  writeFileSync(join(folder, "levels.json"), JSON.stringify(study));
+  writeFileSync(join(folder, "levels.json"), JSON.stringify(study(asked)));
   const server = await serve([join(folder, "levels.json")]);
   const browser = await open("webgl2");
   const { page } = browser;
-  const asked = [];
-  page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+  const fetched = [];
+  page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
   try {
     await page.goto(`${server.url}/s/levels/?backend=webgl2`);
     await page.waitForSelector("main[data-view]", { timeout: 30_000 });
@@ -65,10 +84,10 @@ test("adaptive: levels follow the answers, and a reload goes on at the same leve
         trials += 1;
         await phase(page, "ready", 120_000);
         await until("the level is stored", async () => (await chosen(page, server)).length >= trials);
-        const { level, left } = (await chosen(page, server))[trials - 1];
+        const shown = (await chosen(page, server))[trials - 1];
         assert.equal(await page.locator(".stage-frame.pair figure").count(), 2);
         await go(page, "mouse");
-        if (trials === RELOADED_AT) {
+        if (trials === asked.reloadedAt) {
           await phase(page, "playing");
           await page.reload();
           await page.waitForSelector("main[data-view=trial]", { timeout: 30_000 });
@@ -78,31 +97,34 @@ test("adaptive: levels follow the answers, and a reload goes on at the same leve
           await go(page, "mouse");
         }
         await phase(page, "answering", 120_000);
-        // Where the other clip stands left, the varied one stands right.
-        const side = level >= SEEN_FROM === left ? "right" : "left";
-        await page.locator(`fieldset[data-question=smoother] label:has(input[value=${side}])`).click();
+        await page.locator(`fieldset[data-question=${asked.question.id}] label:has(input[value=${asked.answer(shown)}])`).click();
       }
       await go(page, "mouse");
       here = await leave(page, here, 60_000);
     }
-    assert.equal(trials, 8);
+    assert.equal(trials, asked.trials);
     assert.deepEqual(browser.errors, [], "the console is clean");
-    assert.ok(asked.some((path) => path.endsWith("/adaptive_bg.wasm")), "the module of levels is loaded");
+    assert.ok(fetched.some((path) => path.endsWith("/adaptive_bg.wasm")), "the module of levels is loaded");
 
     const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.trial_type === "trial");
-    assert.equal(rows.length, 8);
+    assert.equal(rows.length, asked.trials);
     for (const row of rows) {
       assert.equal(row.level_replayed, "true", `${row.trial_id}: seed and answers give the level`);
       assert.equal(row.weights_expected, "true", `${row.trial_id}: the browser solved what was solved beforehand`);
       assert.equal(row.stimulus, `joy2.lsts@alpha=${row.level}`);
       assert.equal(row.beside, "joy2.none");
-      assert.equal(row.correct, String(Number(row.level) >= SEEN_FROM));
+      const isCatch = row.level_catch === "true";
+      if (isCatch) assert.equal(row.level, "0", "a trial without a difference");
+      assert.equal(row.correct, String(asked.right({ level: Number(row.level), isCatch })));
     }
-    const levels = rows.map((row) => Number(row.level));
+    const counted = rows.filter((row) => row.level_catch !== "true");
+    assert.equal(counted.length, asked.block.trials);
+    const levels = counted.map((row) => Number(row.level));
     assert.ok(new Set(levels).size >= 3, `levels move: ${levels}`);
-    const sds = rows.map((row) => Number(row.posterior_sd));
-    assert.ok(sds[7] < 0.8 * sds[0], `the posterior narrows: ${sds}`);
-    assert.ok(Math.abs(Number(rows[7].posterior_mean) - SEEN_FROM) < 0.2, rows[7].posterior_mean);
+    const sds = counted.map((row) => Number(row.posterior_sd));
+    assert.ok(sds.at(-1) < 0.8 * sds[0], `the posterior narrows: ${sds}`);
+    const mean = counted.at(-1).posterior_mean;
+    assert.ok(Math.abs(Number(mean) - SEEN_FROM) < 0.2, mean);
   } finally {
     await browser.close();
     await server.stop();

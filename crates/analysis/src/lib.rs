@@ -46,7 +46,9 @@ mod trials;
 /// What reports are made of: blocks of a document, tables, figures. Reports of other things than a
 /// study (`mimique annotate evaluate`) are made of the same.
 pub mod components {
-    pub use crate::report::document::{Block, DataTable, Document, Figure, slug};
+    pub use crate::report::document::{
+        Block, DataTable, DecisionTable, Document, Figure, RowEffects, slug,
+    };
     pub use crate::report::document_files;
     pub use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
     pub use crate::report::figure::{

@@ -39,12 +39,19 @@ pub enum Block {
 pub struct DecisionTable {
     /// A row per hypothesis: its words, the decision, effects with their intervals, p, people.
     pub data: DataTable,
-    /// The effects of each row, a line each.
-    pub effects: Vec<Vec<String>>,
-    /// The intervals of each row, drawn; none where there are none. Lines stand as those of the effects.
-    pub drawings: Vec<Option<String>>,
+    /// The effects of each row.
+    pub effects: Vec<RowEffects>,
     /// How the intervals are drawn.
     pub scale: String,
+}
+
+/// The effects of a row.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RowEffects {
+    /// A line each.
+    pub lines: Vec<String>,
+    /// Their intervals drawn, a line each; none where there are none.
+    pub drawing: Option<String>,
 }
 
 /// A table of text cells; `id` names its file.

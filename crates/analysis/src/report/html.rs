@@ -111,7 +111,7 @@ fn decision_table(decisions: &DecisionTable, language: Language) -> Markup {
                     }
                 }
                 tbody {
-                    @for (row, cells) in data.rows.iter().enumerate() {
+                    @for (cells, effects) in data.rows.iter().zip(&decisions.effects) {
                         tr {
                             @for (place, cell) in cells.iter().enumerate() {
                                 @match place {
@@ -119,12 +119,12 @@ fn decision_table(decisions: &DecisionTable, language: Language) -> Markup {
                                     1 => td { (typeset(cell)) },
                                     2 => {
                                         td.effects {
-                                            @for line in &decisions.effects[row] {
+                                            @for line in &effects.lines {
                                                 div { (typeset(line)) }
                                             }
                                         }
                                         td.drawn {
-                                            @if let Some(drawing) = &decisions.drawings[row] {
+                                            @if let Some(drawing) = &effects.drawing {
                                                 (PreEscaped(drawing))
                                             }
                                         }

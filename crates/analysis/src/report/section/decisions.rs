@@ -5,7 +5,7 @@ use mimique_stats::Outcome;
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::decision::{Decision, Effect, EffectUnit, decision, effects};
 use crate::hypothesis::reading;
-use crate::report::document::{Block, DataTable, DecisionTable};
+use crate::report::document::{Block, DataTable, DecisionTable, RowEffects};
 use crate::report::figure::flow_chart::flow_in_words;
 use crate::report::figure::{DrawnInterval, forest_row};
 use crate::report::section::Writer;
@@ -98,8 +98,7 @@ impl Writer<'_> {
             });
             let drawn: Vec<DrawnInterval> = drawn.collect();
             let drawing = (!drawn.is_empty()).then(|| forest_row(&drawn, &lines.join("; ")));
-            table.drawings.push(drawing);
-            table.effects.push(lines);
+            table.effects.push(RowEffects { lines, drawing });
         }
         table.scale = self.scale_in_words(&all, edge);
         let open =
@@ -162,7 +161,7 @@ impl Writer<'_> {
         if ranges.is_empty() {
             return String::new();
         }
-        let ranges = ranges.join(language.pick(", ", ", "));
+        let ranges = ranges.join(", ");
         language.pick(
             format!("Intervals are drawn around the line of no difference, to the edges at {ranges}."),
             format!("Les intervalles sont dessinés autour de la ligne d’une différence nulle, jusqu’aux bords à {ranges}."),
