@@ -22,7 +22,10 @@ fn study(folder: &Path) -> Value {
 fn goes_all_the_way(folder: &Path) {
     let file = text(&folder.join("study.json"));
     let said = ok(&["check", "--without-clips", &file]);
-    assert!(said.contains("no errors, 0 warnings"), "{said}");
+    // A capture of one's own may gain by a smoothed adaptation, which is advice.
+    let warnings = said.lines().filter(|line| line.starts_with("warning: "));
+    assert!(warnings.clone().all(|line| line.contains("rbfSmoothing")), "{said}");
+    assert!(said.contains("no errors, "), "{said}");
     let out = folder.join("simulated");
     ok(&["simulate", &file, "--participants", "8", "--seed", "1", "--out", &text(&out)]);
     let id = study(folder)["id"].as_str().unwrap().to_owned();
@@ -41,7 +44,9 @@ fn every_design_goes_all_the_way_in_both_languages() {
         assert_eq!(study(&folder)["id"], format!("my-{design}"));
         assert_eq!(study(&folder)["languages"], serde_json::json!(["fr", "en"]));
         goes_all_the_way(&folder);
-        // In one language no other is left.
+    }
+    // In one language no other is left.
+    for design in ["identify-emotion", "compare-two"] {
         let folder = place.path().join(format!("one-{design}"));
         ok(&["new", &text(&folder), "--design", design, "--title", "A title of mine"]);
         let said = ok(&["check", "--without-clips", &text(&folder.join("study.json"))]);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use mimique_solver::{FrontEndError, Group, Method, MethodSpec, SpecError};
-use mimique_study::{AvatarSource, Clip, Issue, Problem, Study};
+use mimique_study::{AvatarSource, CaptureSource, Clip, Issue, Problem, Study};
 
 use super::source_files::{AvatarFile, Performance};
 use super::sources::Sources;
@@ -71,8 +71,11 @@ impl Examiner<'_, '_> {
         }
         let Some(avatar) = self.avatar(&clip.avatar) else { return };
         let spec = spec.unwrap_or(&method.spec);
+        // All performances of a built-in actor have the same markers and shapes.
+        let built_in = self.built_in(&clip.segment);
         if spec.method == Method::Recorded {
-            if self.is_first(["recorded", &clip.avatar, &clip.segment, ""]) {
+            let part = built_in.as_ref().unwrap_or(&clip.segment);
+            if self.is_first(["recorded", &clip.avatar, part, ""]) {
                 let shapes = avatar.avatar.face_shapes();
                 let recording = self.sources.recording(&clip.segment, shapes);
                 add(&mut self.found, recording.err());
@@ -87,6 +90,11 @@ impl Examiner<'_, '_> {
             let spec = MethodSpec { importance: Default::default(), ..spec.clone() };
             add(&mut self.found, unknown(clip, &spec, avatar.avatar.face_shapes(), &[]));
         }
+        if let Some(capture) = &built_in
+            && !self.is_first([&clip.avatar, capture, &clip.method, &known])
+        {
+            return;
+        }
         let (performance, faults) = self.sources.examined(&clip.segment, &avatar);
         add(&mut self.found, faults);
         if let Some(performance) = performance {
@@ -95,6 +103,14 @@ impl Examiner<'_, '_> {
         if spec.method == Method::Regression && self.is_first(["training", &clip.method, "", ""]) {
             add(&mut self.found, self.sources.training(&clip.method).err());
         }
+    }
+
+    /// The identifier of a segment's capture where that is a built-in actor.
+    fn built_in(&self, segment: &str) -> Option<String> {
+        let stimuli = &self.study.stimuli;
+        let segment = stimuli.segments.iter().find(|own| own.id == segment)?;
+        let source = stimuli.captures.get(&segment.capture)?.source()?;
+        matches!(source, CaptureSource::Builtin(_)).then(|| segment.capture.clone())
     }
 
     /// An avatar that can be used.
