@@ -9,6 +9,7 @@ use anyhow::Context;
 use mimique_analysis::{ExportError, Language, analyze_with_stimuli};
 use mimique_stats::Table;
 use mimique_study::Study;
+use mimique_study::text::{counted, counted_as};
 
 use crate::report_folder;
 
@@ -81,10 +82,12 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         return Ok(());
     }
     let (used, all) = report.people;
-    writeln!(out, "{used} of {all} people, {} trials", report.trials)?;
+    let all = counted_as(all, "person", "people");
+    writeln!(out, "{used} of {all}, {}", counted(report.trials, "trial"))?;
     for (id, reading) in &report.readings {
         writeln!(out, "{id}. {reading}")?;
     }
-    writeln!(out, "{} files, report: {}", report.files.len(), page.display())?;
+    let files = counted(report.files.len(), "file");
+    writeln!(out, "{files}, report: {}", page.display())?;
     Ok(())
 }

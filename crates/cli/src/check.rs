@@ -8,10 +8,12 @@ use anyhow::Context as _;
 use mimique_comparison::{ClipDifference, StudyComparison, compare_clips};
 use mimique_stimulus::{
     ADVISED_SMOOTHING, AdvisedMethod, Places, PrepareError, Prepared, SoundError, StudySound,
-    advised_methods, prepare, study_sounds,
+    advised_methods, prepare, source_faults, study_sounds,
 };
-use mimique_study::text::template;
-use mimique_study::{Issue, Problem, Report, Severity, Study, check, json_schema, resolve_path};
+use mimique_study::text::{counted, template};
+use mimique_study::{
+    Issue, Problem, Report, Severity, Study, check, check_opened, json_schema, resolve_path,
+};
 
 /// Options.
 #[derive(clap::Args)]
@@ -57,7 +59,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "{}", serde_json::to_string_pretty(&json_schema())?)?;
         return Ok(());
     };
-    let mut report = check_file(&file)?;
+    let mut report = check_opened_file(&file)?;
     let mut comparison = None;
     let mut sounds = Vec::new();
     if let Some(checked) = &report.study {
@@ -169,13 +171,9 @@ fn tell_sounds(out: &mut impl std::io::Write, sounds: &[StudySound]) -> std::io:
     for StudySound { file, facts, .. } in sounds {
         let Ok(facts) = facts else { continue };
         let (name, seconds) = (facts.format.name(), facts.duration_s);
-        let channels = if facts.channels == 1 { "channel" } else { "channels" };
         let rate = facts.sample_rate_hz;
-        writeln!(
-            out,
-            "sound {file}: {name}, {seconds:.3} s, {rate} Hz, {} {channels}",
-            facts.channels
-        )?;
+        let channels = counted(usize::from(facts.channels), "channel");
+        writeln!(out, "sound {file}: {name}, {seconds:.3} s, {rate} Hz, {channels}")?;
     }
     Ok(())
 }
@@ -193,9 +191,8 @@ fn clips(study: &Study, file: &Path) -> anyhow::Result<Clips> {
     let issue = |pointer: String, severity, problem| Issue { pointer, severity, problem };
     let prepared = match prepare(study, &Places::of(file, folder.path()), &mut |_| ()) {
         Ok(prepared) => prepared,
-        Err(PrepareError { pointer, message }) => {
-            let problem = Problem::NotPrepared { message };
-            let issues = vec![issue(pointer, Severity::Error, problem)];
+        Err(faults) => {
+            let issues = faults.into_iter().map(PrepareError::issue).collect();
             return Ok(Clips { issues, comparison: None });
         }
     };
@@ -251,22 +248,39 @@ fn differences(out: &mut impl std::io::Write, comparison: &StudyComparison) -> s
 
 /// Reads and checks a study file; files that it names are looked for on this machine.
 pub fn check_file(file: &Path) -> anyhow::Result<Report> {
+    Ok(check(&text_of(file)?, &looked_up(file)))
+}
+
+/// The same with the files opened that its clips are made of: every fault of them, before anything is solved.
+pub(crate) fn check_opened_file(file: &Path) -> anyhow::Result<Report> {
+    let places = Places::of(file, PathBuf::new());
+    let opened = |study: &Study| {
+        source_faults(study, &places).into_iter().map(PrepareError::issue).collect::<Vec<_>>()
+    };
+    Ok(check_opened(&text_of(file)?, &looked_up(file), &opened))
+}
+
+fn text_of(file: &Path) -> anyhow::Result<String> {
     let bytes = std::fs::read(file)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
         .with_context(|| file.display().to_string())?;
-    let text = String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         anyhow::anyhow!("{}: byte {place}: not UTF-8; save the file as UTF-8", file.display())
-    })?;
-    let folder = file.parent().unwrap_or(Path::new("."));
+    })
+}
+
+/// Whether a file that a study file names is there.
+fn looked_up(file: &Path) -> impl Fn(&str) -> Result<(), Problem> {
+    let folder = file.parent().unwrap_or(Path::new(".")).to_owned();
     let data = std::env::var_os("MIMIQUE_DATA").map(PathBuf::from);
-    Ok(check(&text, &|path| {
-        let found = resolve_path(path, folder, data.as_deref())?;
+    move |path| {
+        let found = resolve_path(path, &folder, data.as_deref())?;
         if mimique_stimulus::is_source(&found) {
             return Ok(());
         }
         Err(Problem::NoFile { path: found.display().to_string() })
-    }))
+    }
 }
 
 fn print(out: &mut impl std::io::Write, file: &Path, report: &Report) -> std::io::Result<()> {
@@ -282,19 +296,20 @@ fn print(out: &mut impl std::io::Write, file: &Path, report: &Report) -> std::io
     match &report.study {
         None => writeln!(
             out,
-            "{}: {} errors, {} warnings",
+            "{}: {}, {}",
             file.display(),
-            report.errors(),
-            report.warnings()
+            counted(report.errors(), "error"),
+            counted(report.warnings(), "warning")
         ),
         Some(checked) => {
             let study = checked.study();
             writeln!(
                 out,
-                "{}: no errors, {} warnings; {} clips, languages {}, configuration {}",
+                "{}: no errors, {}; {}, {} {}, configuration {}",
                 file.display(),
-                report.warnings(),
-                study.clips().len(),
+                counted(report.warnings(), "warning"),
+                counted(study.clips().len(), "clip"),
+                if study.languages.len() == 1 { "language" } else { "languages" },
                 study.languages.join(" "),
                 checked.config_hash()
             )

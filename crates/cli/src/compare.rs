@@ -14,6 +14,7 @@ use mimique_solver::{Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MarkerMap, RecordedWeights, TakeOptions, read_performance,
 };
+use mimique_study::text::counted;
 use serde::Serialize;
 
 use crate::output;
@@ -273,8 +274,7 @@ fn tell_difference(out: &mut impl std::io::Write, difference: &Difference) -> st
     }
     match difference.lip_closures {
         Some(own) if own.shut > 0 => {
-            let frames = if own.shut == 1 { "frame" } else { "frames" };
-            writeln!(out, "  lips kept shut in {} of {} {frames}", own.kept, own.shut)
+            writeln!(out, "  lips kept shut in {} of {}", own.kept, counted(own.shut, "frame"))
         }
         _ => Ok(()),
     }

@@ -58,7 +58,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     );
     let checked = checked_study(&args.study)?;
     let hosting = prepare_study(&args.study, checked.study(), &args.packs)
-        .map_err(|problem| anyhow::anyhow!(problem))?;
+        .map_err(|faults| anyhow::anyhow!(faults.join("\nerror: ")))?;
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
     let hosted = HostedStudy::new(checked.value().clone(), hosting.clips, stage)?;
 

@@ -20,6 +20,7 @@ mod import;
 mod inspect;
 mod layout;
 mod motion;
+mod new;
 mod order;
 mod output;
 mod power;
@@ -59,6 +60,8 @@ enum Command {
     Serve(serve::Args),
     /// Open the studio: an avatar and a capture, the match, methods side by side, exports
     Preview(preview::Args),
+    /// Make the folder of a new study: a design, instruments, your avatar and capture
+    New(Box<new::Args>),
     /// List every problem of a study file
     Check(check::Args),
     /// Print the exact trial order that a participant gets
@@ -123,6 +126,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Serve(args) => serve::run(args, json),
         Command::Preview(args) => preview::run(args, json),
+        Command::New(args) => new::run(*args, json),
         Command::Check(args) => check::run(args, json),
         Command::Order(args) => order::run(args, json),
         Command::Inspect(args) => inspect::run(args, json),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{anyhow, bail};
 use mimique_mocap::{Capture, CaptureFile, GapFill, LowPass, RepairPlan, Repaired, stillest};
 use mimique_stimulus::{FileHash, RepairSidecar, sidecar_path};
+use mimique_study::text::counted;
 use serde_json::json;
 
 use crate::capture_options::CaptureOptions;
@@ -93,11 +94,11 @@ fn print(
     }
     writeln!(
         out,
-        "{}: {} frames at {} Hz, {} markers",
+        "{}: {} at {} Hz, {}",
         args.out.display(),
-        record.frames_out,
+        counted(record.frames_out, "frame"),
         record.rate_hz_out,
-        record.markers
+        counted(record.markers, "marker")
     )?;
     writeln!(out, "{}", record.summary())?;
     for swap in &record.swaps {

@@ -9,6 +9,7 @@ use mimique_stimulus::{
     Channels, EafAnnotation, EafDocument, EafSegments, LeftOut, SuggestOptions, TakeSegment, cut,
     read_segments, study_segments, suggest, write_segments,
 };
+use mimique_study::text::counted;
 use serde_json::json;
 
 use crate::border_options::{BorderOptions, Rule};
@@ -150,9 +151,9 @@ fn print_segments(
 ) -> std::io::Result<()> {
     writeln!(
         out,
-        "{}: {} expressions in {:.1} s at {} Hz{}",
+        "{}: {} in {:.1} s at {} Hz{}",
         args.take.display(),
-        segments.len(),
+        counted(segments.len(), "expression"),
         take.frames() as f64 / take.rate_hz,
         take.rate_hz,
         if args.from.is_none() { ", suggested: look at them before they are used" } else { "" },

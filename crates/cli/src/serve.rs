@@ -14,6 +14,7 @@ use mimique_server::{
 };
 use mimique_stimulus::Places;
 use mimique_storage::{Storage, durable_file};
+use mimique_study::text::counted;
 use mimique_study::{MEDIA_PREFIX, Severity};
 use serde_json::json;
 use tokio::net::TcpListener;
@@ -247,7 +248,8 @@ impl Hosted {
         version: u64,
     ) -> std::io::Result<()> {
         let Self { id, config_hash, clips } = self;
-        writeln!(out, "study {id} ({clips} clips, version {version}, {})", &config_hash[..12])?;
+        let clips = counted(*clips, "clip");
+        writeln!(out, "study {id} ({clips}, version {version}, {})", &config_hash[..12])?;
         writeln!(out, "  participants  {base}/s/{id}/")?;
         writeln!(out, "  preview       {base}/preview/{id}")
     }
@@ -275,7 +277,7 @@ fn load_studies(files: &[PathBuf], packs: &Path, stage: Stage) -> anyhow::Result
                     .with_measures(hosting.measures);
                 studies.push(study.with_places(Places::of(file, packs)));
             }
-            Err(problem) => problems.push(problem),
+            Err(faults) => problems.extend(faults),
         }
     }
     anyhow::ensure!(problems.is_empty(), "{}", problems.join("\nerror: "));
@@ -286,7 +288,7 @@ pub fn prepare_study(
     file: &Path,
     study: &mimique_study::Study,
     packs: &Path,
-) -> Result<Hosting, String> {
+) -> Result<Hosting, Vec<String>> {
     // Hidden where no terminal is.
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
@@ -298,7 +300,8 @@ pub fn prepare_study(
         bar.set_message(format!("preparing {}", progress.what));
     });
     bar.finish_and_clear();
-    let prepared = prepared.map_err(|error| format!("{}: {error}", file.display()))?;
+    let named = |fault| format!("{}: {fault}", file.display());
+    let prepared = prepared.map_err(|faults| faults.into_iter().map(named).collect::<Vec<_>>())?;
     for (pointer, text) in &prepared.warnings {
         eprintln!("warning: {}: {pointer}: {text}", file.display());
     }

@@ -10,6 +10,7 @@ use mimique_analysis::{Parameters, SimulatedSession, Simulation};
 use mimique_server::export::{Exported, Format, Unstored};
 use mimique_stats::Table;
 use mimique_study::Study;
+use mimique_study::text::counted;
 
 use crate::output;
 use crate::study_file::load;
@@ -124,8 +125,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     }
     writeln!(
         out,
-        "{}: {participants} of {} simulated participants left answers, {rows} rows, seed {}",
-        study.id, args.participants, args.seed
+        "{}: {participants} of {} left answers, {}, seed {}",
+        study.id,
+        counted(args.participants as usize, "simulated participant"),
+        counted(rows, "row"),
+        args.seed
     )?;
     for path in &written {
         writeln!(out, "  {}", path.display())?;

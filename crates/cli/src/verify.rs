@@ -3,6 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
+use mimique_study::text::counted;
 use mimique_verify::{Case, Checked, verify};
 
 /// Wrong values of a case that the text shows; `--json` has all.
@@ -49,28 +50,23 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         serde_json::to_writer(&mut out, &Told { cases })?;
         writeln!(out)?;
     } else if wrong == 0 {
-        writeln!(out, "{}, {}: all right", of(total, "case"), of(values, "value"))?;
+        writeln!(out, "{}, {}: all right", counted(total, "case"), counted(values, "value"))?;
     } else {
-        let (cases, values) = (of(total, "case"), of(values, "value"));
+        let (cases, values) = (counted(total, "case"), counted(values, "value"));
         writeln!(out, "{cases}, {wrong} wrong; {values}, {wrong_values} wrong")?;
     }
     if wrong > 0 { Err(Wrong.into()) } else { Ok(()) }
-}
-
-/// So many of something.
-fn of(count: usize, one: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {one}{plural}")
 }
 
 /// A case's line, and those of its wrong values.
 fn lines(case: &Case) -> String {
     let count = case.values.len();
     if case.right {
-        return format!("right  {}  {}\n", case.case, of(count, "value"));
+        return format!("right  {}  {}\n", case.case, counted(count, "value"));
     }
     let wrong: Vec<&Checked> = case.wrong().collect();
-    let mut text = format!("wrong  {}  {} of {}\n", case.case, wrong.len(), of(count, "value"));
+    let mut text =
+        format!("wrong  {}  {} of {}\n", case.case, wrong.len(), counted(count, "value"));
     for value in wrong.iter().take(SHOWN) {
         text += &format!(
             "         {}: {} where {} is expected, within {:.1e}\n",

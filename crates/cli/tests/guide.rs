@@ -6,8 +6,15 @@
 
 use std::path::{Path, PathBuf};
 
+use mimique_test_support::real_file;
+
 /// What a page's commands may name, from the repository's root.
 const THERE: [&str; 2] = ["study-config", "docs/guide/data"];
+
+/// Public files that a page's commands may name, from the folder of the real data: they stand in the page's folder
+/// `public`.
+const PUBLIC: [&str; 3] =
+    ["ict-facekit/ict-facekit.glb", "animface/JawMoCap.c3d", "animface/markers-ict-facekit.json"];
 
 fn repository() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -28,8 +35,10 @@ fn pages_with_commands() -> Vec<(String, String)> {
 #[test]
 fn pages_say_what_is_printed() {
     let folder = tempfile::tempdir().unwrap();
-    let pages = pages_with_commands();
+    let mut pages = pages_with_commands();
     assert!(!pages.is_empty(), "docs/guide has no commands");
+    pages
+        .retain(|(name, text)| !text.contains("public/") || gets_public_files(name, folder.path()));
     for (name, text) in &pages {
         std::fs::write(folder.path().join(format!("{name}.md")), text).unwrap();
         for part in THERE {
@@ -54,6 +63,21 @@ fn pages_say_what_is_printed() {
     if let Err(failure) = outcome {
         std::panic::resume_unwind(failure);
     }
+}
+
+/// Puts the public files into a page's folder; whether they are there to be put.
+fn gets_public_files(name: &str, folder: &Path) -> bool {
+    let there = folder.join(format!("{name}.in/public"));
+    std::fs::create_dir_all(&there).unwrap();
+    PUBLIC.iter().all(|file| {
+        let found = real_file(&format!("docs/guide/{name}.md"), file);
+        found.is_some_and(|from| {
+            let to = there.join(from.file_name().unwrap());
+            // Not as a copy, which could not be written where the original cannot.
+            std::fs::write(&to, std::fs::read(&from).unwrap()).unwrap();
+            true
+        })
+    })
 }
 
 /// A folder with everything in it.

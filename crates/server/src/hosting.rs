@@ -25,15 +25,17 @@ pub struct Hosting {
 /// Prepares the clips of a study, and keeps its pictures and videos by content hash beside their packs.
 ///
 /// # Errors
-/// A clip cannot be prepared, or a file cannot be read; the sentence names it.
+/// Clips cannot be prepared, or a file cannot be read: a sentence for each fault.
 pub fn prepare_hosting(
     study: &Study,
     places: &Places,
     progress: &mut dyn FnMut(Progress<'_>),
-) -> Result<Hosting, String> {
-    let mut prepared = prepare(study, places, &mut *progress).map_err(|error| error.to_string())?;
-    add_media(study, places, &mut prepared.clips)?;
-    let comparison = comparison_of(study, &prepared.clips, &places.packs)?;
+) -> Result<Hosting, Vec<String>> {
+    let mut prepared = prepare(study, places, &mut *progress)
+        .map_err(|faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    add_media(study, places, &mut prepared.clips).map_err(|fault| vec![fault])?;
+    let comparison =
+        comparison_of(study, &prepared.clips, &places.packs).map_err(|fault| vec![fault])?;
     prepared.warnings.extend(comparison.unlike.iter().map(|unlike| {
         let (what, remedy) = unlike.words();
         ("/stimuli/segments".to_owned(), format!("{what}; {remedy}"))

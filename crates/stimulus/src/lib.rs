@@ -83,7 +83,7 @@ pub use marker_map::{
 };
 pub use prepare::{
     AdvisedMethod, Places, PrepareError, Prepared, Progress, StudySound, advised_methods,
-    avatar_key, exertion_drawing, is_source, prepare, study_sounds,
+    avatar_key, exertion_drawing, is_source, prepare, source_faults, study_sounds,
 };
 pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{

@@ -163,7 +163,7 @@ fn exertions_that_cannot_be_are_refused_at_their_place() {
     std::fs::write(folder.path().join("map.json"), "{\"leftEar\": \"Head\"}").unwrap();
     std::fs::write(folder.path().join("ride.csv"), ride(60, None)).unwrap();
     let refused = |own: &Value, cut: [usize; 2]| {
-        prepare(&study(own, cut), &places(folder.path()), &mut |_| ()).unwrap_err()
+        prepare(&study(own, cut), &places(folder.path()), &mut |_| ()).unwrap_err().remove(0)
     };
     let person = |person: Value| json!({"builtin": "run", "for": 20, "person": person});
     for (own, pointer, said) in [

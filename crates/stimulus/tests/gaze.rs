@@ -205,7 +205,8 @@ fn a_study_shows_one_gaze_by_every_method_and_by_the_performance_itself() {
     std::fs::write(&file, "frame,time,azimuth,elevation\n0,0,9,1\n1,60,9,1\n").unwrap();
     assert!((gazes(json!({"file": "gaze.csv"}))[0][7].azimuth - 9.0).abs() < 0.01);
     std::fs::write(&file, "frame,time,jawOpen\n0,0,9\n1,60,9\n").unwrap();
-    let error = prepare(&study(json!({"file": "gaze.csv"})), &places, &mut |_| ()).unwrap_err();
+    let error =
+        prepare(&study(json!({"file": "gaze.csv"})), &places, &mut |_| ()).unwrap_err().remove(0);
     assert_eq!(error.pointer, "/stimuli/captures/actor/gaze/file");
     assert!(error.message.contains("no column tells a gaze (there are jawOpen)"), "{error}");
 }

@@ -184,7 +184,7 @@ fn rates_and_frames_that_were_not_recorded_are_refused() {
         stimuli["captures"] = captures;
         stimuli["segments"] = segments;
         let folder = tempfile::tempdir().unwrap();
-        prepare(&study(stimuli), &places(folder.path(), None), &mut |_| {}).unwrap_err()
+        prepare(&study(stimuli), &places(folder.path(), None), &mut |_| {}).unwrap_err().remove(0)
     };
     let fear = json!([{"id": "fear", "capture": "actor",
         "performance": {"expression": "fear", "intensity": 3}}]);
@@ -208,7 +208,7 @@ fn rates_and_frames_that_were_not_recorded_are_refused() {
     };
     for rate in [Value::Null, json!(20.0)] {
         assert!((recorded(rate.clone(), 50).unwrap() - 800.0).abs() < 1e-6);
-        let error = recorded(rate, 51).unwrap_err();
+        let error = recorded(rate, 51).unwrap_err().remove(0);
         assert_eq!(error.pointer, "/stimuli/segments/0");
         assert!(error.message.contains("50"), "{error}");
     }
@@ -265,8 +265,8 @@ fn locked_shapes_bounds_and_importance_of_the_study_file_are_obeyed() {
         "weighed": {"method": "box", "importance": {"MARKER": 0.0}},
     });
     let places = places(folder.path(), None);
-    let wrong = prepare(&study(stimuli.clone()), &places, &mut |_| {}).unwrap_err();
-    assert_eq!(wrong.pointer, "/stimuli/methods/weighed");
+    let wrong = prepare(&study(stimuli.clone()), &places, &mut |_| {}).unwrap_err().remove(0);
+    assert_eq!(wrong.pointer, "/stimuli/methods/weighed/importance/MARKER");
     assert!(wrong.message.contains("no marker 'MARKER'"), "{wrong}");
     let label = wrong.message.split("use names of ").nth(1).unwrap().split(',').next().unwrap();
     stimuli["methods"]["weighed"]["importance"] = json!({ label: 0.0 });
@@ -330,12 +330,12 @@ fn a_surface_and_a_regression_are_prepared_and_play() {
     // Bad training, at its place.
     stimuli["methods"]["learnt"]["training"] = Value::Null;
     stimuli["methods"]["learnt"].as_object_mut().unwrap().remove("training");
-    let error = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap_err();
+    let error = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap_err().remove(0);
     assert_eq!(error.pointer, "/stimuli/methods/learnt/training");
     std::fs::write(folder.path().join("rom.csv"), "frame,time,jawOpen\n0,0,0\n1,0.01,1\n").unwrap();
     stimuli["methods"]["learnt"]["training"] =
         json!({"capture": "trainer", "weights": folder.path().join("rom.csv")});
-    let error = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap_err();
+    let error = prepare(&study_of(&stimuli), &places, &mut |_| {}).unwrap_err().remove(0);
     assert_eq!(error.pointer, "/stimuli/methods/learnt/training");
     assert!(error.message.contains("built-in actor"), "{error}");
 }
@@ -376,7 +376,7 @@ fn what_is_wrong_is_named_with_its_pointer() {
         let mut stimuli = builtin();
         change(&mut stimuli);
         let places = places(folder.path(), None);
-        let error = prepare(&study(stimuli), &places, &mut |_| {}).unwrap_err();
+        let error = prepare(&study(stimuli), &places, &mut |_| {}).unwrap_err().remove(0);
         assert_eq!(error.pointer, pointer, "{error}");
         assert!(error.message.contains(says), "{error}");
     }
@@ -575,7 +575,7 @@ fn a_video_is_served_as_it_is() {
     assert_eq!(prepared.clips["joy2.box.ada"].packs().count(), 3);
 
     stimuli["avatars"]["person"] = json!({"videos": {"joy2": "gone.webm"}});
-    let error = prepare(&study(stimuli), &here, &mut |_| {}).unwrap_err();
+    let error = prepare(&study(stimuli), &here, &mut |_| {}).unwrap_err().remove(0);
     assert_eq!(error.pointer, "/stimuli/avatars/person/videos/joy2");
     assert!(error.message.contains("gone.webm"), "{error}");
 }

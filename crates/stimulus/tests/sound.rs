@@ -186,13 +186,13 @@ fn a_sound_that_begins_past_its_end_or_is_none_names_place_and_remedy() {
     let mut late = stimuli();
     late["captures"]["take"]["sound"]["fromS"] = json!(4.0);
     let (_folder, study, places) = folder(late);
-    let error = prepare(&study, &places, &mut |_| ()).unwrap_err();
+    let error = prepare(&study, &places, &mut |_| ()).unwrap_err().remove(0);
     assert_eq!(error.pointer, "/stimuli/captures/take/sound/fromS");
     assert!(error.message.contains("begins at 6.000 s, and the sound lasts 5.000 s"), "{error}");
     let mut text = stimuli();
     text["segments"][2]["sound"]["file"] = json!("take.csv");
     let (_folder, study, places) = folder(text);
-    let error = prepare(&study, &places, &mut |_| ()).unwrap_err();
+    let error = prepare(&study, &places, &mut |_| ()).unwrap_err().remove(0);
     assert_eq!(error.pointer, "/stimuli/segments/2/sound/file");
     assert!(error.message.contains("neither WAV, MP3 nor Ogg Opus; export"), "{error}");
 }

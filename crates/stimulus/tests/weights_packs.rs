@@ -130,6 +130,6 @@ fn arrays_of_weights_are_read_at_the_rate_that_the_study_says_and_refused_withou
         assert!(apart < 2e-4 && row[n..].iter().all(|weight| *weight == 0.0), "{apart}");
     }
     let unknown = study(json!({"file": "weights.npy"}));
-    let error = prepare(&unknown, &places, &mut |_| {}).unwrap_err().to_string();
+    let error = prepare(&unknown, &places, &mut |_| {}).unwrap_err().remove(0).to_string();
     assert!(error.contains("/stimuli/captures/array/file") && error.contains("rate"), "{error}");
 }

@@ -21,8 +21,8 @@ pub mod text;
 pub use answer::{AnswerProblem, Answers, alike};
 pub use canonical::{canonical, config_hash};
 pub use check::{
-    CheckedStudy, Count, FileLookup, Issue, Issues, JsonType, Known, Names, Nearest, Problem,
-    Report, SCHEMA_ADDRESS, Severity, Shown, Wanted, check, json_schema,
+    CheckedStudy, Count, Counted, FileLookup, Issue, Issues, JsonType, Known, Names, Nearest,
+    Problem, Report, SCHEMA_ADDRESS, Severity, Shown, Wanted, check, check_opened, json_schema,
 };
 pub use clip_source::{ClipSound, ClipSource};
 pub use closed_loop::{ChosenLevel, ClosedLoop, NoLevels, grid, staircase};

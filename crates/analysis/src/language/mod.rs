@@ -3,7 +3,7 @@
 pub(crate) mod naming;
 
 use mimique_stats::Undefined;
-use mimique_study::text::primary_language;
+use mimique_study::text::{counted_as, counted_in_french, primary_language};
 
 /// English or French.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,6 +38,14 @@ impl Language {
         match self {
             Self::English => english,
             Self::French => french,
+        }
+    }
+
+    /// A count with its noun, given for one and for many in English and in French.
+    pub(crate) fn counted(self, count: usize, english: [&str; 2], french: [&str; 2]) -> String {
+        match self {
+            Self::English => counted_as(count, english[0], english[1]),
+            Self::French => counted_in_french(count, french[0], french[1]),
         }
     }
 

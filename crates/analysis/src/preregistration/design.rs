@@ -39,22 +39,25 @@ fn plan(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
     let sampled = samples(&study.sequence);
     let segments = study.stimuli.segments.len();
     let (methods, avatars) = (study.stimuli.methods.len(), study.stimuli.avatars.len());
+    let count = language.counted(clips.len(), ["clip", "clips"], ["extrait", "extraits"]);
+    let segments = language.counted(
+        segments,
+        ["segment of performance", "segments of performance"],
+        ["segment joué", "segments joués"],
+    );
+    let methods = language.counted(methods, ["method", "methods"], ["méthode", "méthodes"]);
+    let avatars = language.counted(avatars, ["avatar", "avatars"], ["avatar", "avatars"]);
     let words = language.pick(
-        format!(
-            "Within participants: {} clips, made of {segments} segments of performance, {methods} methods and {avatars} avatars.",
-            clips.len()
-        ),
-        format!(
-            "Intra-participants : {} extraits, faits de {segments} segments joués, {methods} méthodes et {avatars} avatars.",
-            clips.len()
-        ),
+        format!("Within participants: {count}, made of {segments}, {methods} and {avatars}."),
+        format!("Intra-participants : {count}, faits de {segments}, {methods} et {avatars}."),
     );
     text.line(&words);
     for name in &conditions {
         let trials = trials_in(study, &study.sequence, &clips, Some(name));
+        let trials = trials_counted(language, trials);
         let words = language.pick(
-            format!("Between participants: the condition `{name}`, of {trials} trials."),
-            format!("Inter-participants : la condition `{name}`, de {trials} essais."),
+            format!("Between participants: the condition `{name}`, of {trials}."),
+            format!("Inter-participants : la condition `{name}`, de {trials}."),
         );
         text.line(&words);
     }
@@ -70,16 +73,23 @@ fn plan(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
     }
     text.line("");
     if let Some(training) = &study.training {
-        let count = training.clips.len();
+        let count = language.counted(
+            training.clips.len(),
+            ["trial for practice comes", "trials for practice come"],
+            ["essai d’entraînement précède", "essais d’entraînement précèdent"],
+        );
         let words = language.pick(
-            format!("{count} trials for practice come first; their answers are not analysed."),
-            format!(
-                "{count} essais d’entraînement précèdent ; leurs réponses ne sont pas analysées."
-            ),
+            format!("{count} first; answers for practice are not analysed."),
+            format!("{count} ; les réponses d’entraînement ne sont pas analysées."),
         );
         text.line(&words);
         text.line("");
     }
+}
+
+/// So many trials.
+fn trials_counted(language: Language, trials: usize) -> String {
+    language.counted(trials, ["trial", "trials"], ["essai", "essais"])
 }
 
 /// How many of the trials each participant sees.
@@ -103,8 +113,8 @@ fn trials_in_words(
             format!("Chaque participant voit une partie des {trials} essais ; sur l’ensemble des participants, chacun est montré aussi souvent."),
         ),
         false => language.pick(
-            format!("Each participant sees {trials} trials."),
-            format!("Chaque participant voit {trials} essais."),
+            format!("Each participant sees {}.", trials_counted(language, trials)),
+            format!("Chaque participant voit {}.", trials_counted(language, trials)),
         ),
     }
 }

@@ -11,7 +11,6 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language) {
         let AdaptiveComponent { vary, method, against, trials, tracks, .. } = &block;
         let (parameter, levels) = (&vary.parameter, vary.levels);
         let [from, to] = [vary.from, vary.to].map(|level| language.number(level));
-        let (rule, catches) = (rule(&block, language), block.catches());
         let [asked, catch] = match block.yes {
             None => language.pick(
                 [
@@ -34,9 +33,21 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language) {
                 ],
             ),
         };
+        let rule = rule(&block, language);
+        let mixed = match tracks {
+            1 => "",
+            _ => language.pick(", mixed", ", mêlées"),
+        };
+        let tracks = language.counted(*tracks as usize, ["track", "tracks"], ["suite", "suites"]);
+        let trials = language.counted(*trials as usize, ["trial", "trials"], ["essai", "essais"]);
+        let catches = language.counted(
+            block.catches(),
+            ["catch trial", "catch trials"],
+            ["essai piège", "essais pièges"],
+        );
         text.line(&language.pick(
-            format!("Adaptive block `{name}`: {parameter} of {method} takes one of {levels} levels from {from} to {to}, beside {against}, and {asked}. {tracks} tracks of {trials} trials at most, mixed, {rule}; {catches} catch trials {catch}; no track counts them. Levels are solved in the browser; the weights are held against those that were solved beforehand, and every level is chosen anew from seed and answers in the export (`level_replayed`, `weights_expected`)."),
-            format!("Bloc adaptatif `{name}` : {parameter} de {method} prend l’un de {levels} niveaux de {from} à {to}, à côté de {against}, et {asked}. {tracks} suites de {trials} essais au plus, mêlées, {rule} ; {catches} essais pièges {catch} ; aucune suite ne les compte. Les niveaux sont résolus dans le navigateur ; leurs poids sont comparés à ceux résolus d’avance, et chaque niveau est choisi à nouveau d’après la graine et les réponses dans l’export (`level_replayed`, `weights_expected`)."),
+            format!("Adaptive block `{name}`: {parameter} of {method} takes one of {levels} levels from {from} to {to}, beside {against}, and {asked}. {tracks} of {trials} at most{mixed}, {rule}; {catches} {catch}; no track counts them. Levels are solved in the browser; the weights are held against those that were solved beforehand, and every level is chosen anew from seed and answers in the export (`level_replayed`, `weights_expected`)."),
+            format!("Bloc adaptatif `{name}` : {parameter} de {method} prend l’un de {levels} niveaux de {from} à {to}, à côté de {against}, et {asked}. {tracks} de {trials} au plus{mixed}, {rule} ; {catches} {catch} ; aucune suite ne les compte. Les niveaux sont résolus dans le navigateur ; leurs poids sont comparés à ceux résolus d’avance, et chaque niveau est choisi à nouveau d’après la graine et les réponses dans l’export (`level_replayed`, `weights_expected`)."),
         ));
         text.line("");
     }

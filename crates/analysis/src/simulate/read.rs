@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::{KindOfQuestion as _, Question, Scale, Study, SyntaxError};
+use mimique_study::{KindOfQuestion as _, Question, Scale, Study};
 use serde_json::Value;
 
 use super::parameters::{Compared, Parameters, Rating, Recognition};
@@ -35,7 +35,7 @@ impl Parameters {
     /// Refuses what does not fit the study, naming the key.
     pub fn read_over(base: &Self, text: &str, study: &Study) -> Result<Self, ParametersError> {
         let given = mimique_study::parse(text).map_err(|error| {
-            problem_at("/", format!("{}: {}", error.place, error.what), SyntaxError::REMEDY)
+            problem_at("/", format!("{}: {}", error.place, error.what), error.remedy)
         })?;
         let mut value = serde_json::to_value(base).map_err(|error| {
             problem_at("/", error.to_string(), "report this mistake of Mimique's")

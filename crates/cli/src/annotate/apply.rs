@@ -8,6 +8,7 @@ use mimique_annotate::labels::UNKNOWN;
 use mimique_annotate::{Answer, LARGEST, Model, Suggested, Take};
 use mimique_mocap::WeightsTable;
 use mimique_stimulus::{EafAnnotation, TakeSegment, write_segments_with};
+use mimique_study::text::counted;
 use serde_json::json;
 
 use super::decoding::DecodeOptions;
@@ -183,9 +184,9 @@ fn print(
     let mut out = std::io::stdout().lock();
     writeln!(
         out,
-        "{}: {} segments in {:.1} s at {} Hz, suggested: look at them before they are used",
+        "{}: {} in {:.1} s at {} Hz, suggested: look at them before they are used",
         args.take.display(),
-        answer.segments.len(),
+        counted(answer.segments.len(), "segment"),
         take.frames() as f64 / take.rate_hz,
         rounded(take.rate_hz),
     )?;

@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use mimique_annotate::{Classifier, LearntLabel, Lesson, Model};
+use mimique_study::text::counted;
 use serde_json::json;
 
 use super::corpus::{Corpus, CorpusOptions};
@@ -70,11 +71,11 @@ fn print(args: &Args, corpus: &Corpus, model: &Model, bytes: usize) -> anyhow::R
     let mut out = std::io::stdout().lock();
     writeln!(
         out,
-        "{}: {}, {:.1} kB, from {} takes at {} Hz",
+        "{}: {}, {:.1} kB, from {} at {} Hz",
         args.out.display(),
         learnt(model),
         bytes as f64 / 1000.0,
-        corpus.takes.len(),
+        counted(corpus.takes.len(), "take"),
         rounded(model.rate_hz),
     )?;
     for (label, seconds) in model.labels.iter().zip(&model.learnt_from.seconds) {

@@ -8,6 +8,7 @@ use mimique_exertion::{Feature, Person, Plan, RecordedHeart, ShapeTable};
 use mimique_exertion_training::{Grid, Lesson, LessonTake, train};
 use mimique_mocap::{ActivityColumn, WeightOptions, read_activity};
 use mimique_stimulus::read_performance;
+use mimique_study::text::{counted, counted_as};
 use serde_json::json;
 
 use super::args::TrainOptions;
@@ -36,9 +37,8 @@ pub(super) fn run(args: &TrainOptions, json: bool) -> anyhow::Result<()> {
     let grid = Grid { c: args.c.0, gamma: args.gamma.0, epsilon: args.epsilon, folds: args.folds };
     let mut out = std::io::stdout().lock();
     if !json {
-        let people = lesson.people.len();
-        let plural = if people == 1 { "person" } else { "people" };
-        writeln!(out, "{} rows of {people} {plural}", lesson.rows.len())?;
+        let people = counted_as(lesson.people.len(), "person", "people");
+        writeln!(out, "{} of {people}", counted(lesson.rows.len(), "row"))?;
     }
     let mut unwritten = None;
     let trained = train(&lesson, &grid, &mut |curve| {

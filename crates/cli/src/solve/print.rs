@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use mimique_stimulus::{ShapeRow, ShapeState, SolveReport, SolvedCapture};
+use mimique_study::text::counted;
 use serde_json::{Value, json};
 
 use super::args::Args;
@@ -50,13 +51,13 @@ fn print_text(
     let SolveReport { summary, seconds, .. } = report;
     writeln!(
         out,
-        "{}: {} frames at {} Hz, {} shapes, {} markers, {} head markers, method {}",
+        "{}: {} at {} Hz, {}, {}, {}, method {}",
         args.out.display(),
-        summary.frames,
+        counted(summary.frames, "frame"),
         report.rate_hz,
-        report.shapes,
-        report.markers.len(),
-        report.head.len(),
+        counted(report.shapes, "shape"),
+        counted(report.markers.len(), "marker"),
+        counted(report.head.len(), "head marker"),
         report.method.method,
     )?;
     writeln!(

@@ -211,7 +211,8 @@ async fn prepare_and_host(
             // Not to know how far it is, is no reason to give up.
             let _ = runtime.block_on(told.note(&storage, &id));
         };
-        let prepared = prepare_hosting(study.study(), &places, &mut said)?;
+        let prepared = prepare_hosting(study.study(), &places, &mut said)
+            .map_err(|faults| faults.join("\n"))?;
         let warnings =
             prepared.warnings.iter().map(|(pointer, text)| format!("{pointer}: {text}")).collect();
         let mut packs = PackStore::default();

@@ -6,7 +6,6 @@ use crate::fit::setup::{Engine, Setup};
 use crate::kouadio::associated_rows::{AssociatedRows, VertexAssociation};
 use crate::method::definition::Needs;
 use crate::parameters::group::Group;
-use crate::parameters::kind::NamesOf;
 use crate::parameters::problem::{SpecError, SpecFault};
 use crate::parameters::table::MethodSpec;
 
@@ -88,9 +87,12 @@ impl Problem {
         }
         check_options(&parts.options, spec)?;
         let n_all = operators.shape_count();
+        let unknown = spec.unknown_names(&parts.shape_names, &parts.marker_labels);
+        if let Some(first) = unknown.into_iter().next() {
+            return Err(first.into());
+        }
         let free = free_shapes(&parts.shape_names, spec)?;
-        let importance = importances(&parts.marker_labels, spec)?;
-        check_names("bounds", spec.bounds.keys(), &parts.shape_names, NamesOf::Shapes)?;
+        let importance = importances(&parts.marker_labels, spec);
 
         let n = free.len();
         let mut deltas = Vec::with_capacity(3 * operators.marker_count() * n);
@@ -157,27 +159,10 @@ fn check_options(built: &OperatorOptions, spec: &MethodSpec) -> Result<(), FitEr
 }
 
 fn free_shapes(names: &[String], spec: &MethodSpec) -> Result<Vec<usize>, FitError> {
-    check_names("locked", spec.locked.iter(), names, NamesOf::Shapes)?;
     let free: Vec<usize> = (0..names.len()).filter(|&k| !spec.locked.contains(&names[k])).collect();
     if free.is_empty() { Err(FitError::AllLocked(names.len())) } else { Ok(free) }
 }
 
-fn importances(labels: &[String], spec: &MethodSpec) -> Result<Vec<f64>, FitError> {
-    check_names("importance", spec.importance.keys(), labels, NamesOf::Markers)?;
-    Ok(labels.iter().map(|l| spec.importance.get(l).copied().unwrap_or(1.0)).collect())
-}
-
-fn check_names<'a>(
-    field: &str,
-    given: impl Iterator<Item = &'a String>,
-    known: &[String],
-    of: NamesOf,
-) -> Result<(), FitError> {
-    for name in given {
-        if !known.contains(name) {
-            let fault = SpecFault::UnknownName { of, found: name.clone(), known: known.to_vec() };
-            return Err(SpecError::of(field, fault).into());
-        }
-    }
-    Ok(())
+fn importances(labels: &[String], spec: &MethodSpec) -> Vec<f64> {
+    labels.iter().map(|l| spec.importance.get(l).copied().unwrap_or(1.0)).collect()
 }

@@ -2,6 +2,8 @@
 
 use wildmatch::WildMatchPattern;
 
+use super::kind::NamesOf;
+use super::problem::{SpecError, SpecFault};
 use super::table::MethodSpec;
 
 /// What stands for any letters, or none.
@@ -33,6 +35,35 @@ impl MethodSpec {
             spec.importance.insert(name.clone(), self.importance[pattern]);
         }
         spec
+    }
+
+    /// What is wrong with the names in `locked`, `importance` and `bounds`: each that is none of these shapes and
+    /// markers, patterns that match none among them, at its place.
+    pub fn unknown_names(&self, shapes: &[String], markers: &[String]) -> Vec<SpecError> {
+        let spec = self.with_names_of(shapes, markers);
+        let mut found = Vec::new();
+        let mut look = |field: &str, entry: String, name: &String, of: NamesOf| {
+            let known = match of {
+                NamesOf::Shapes => shapes,
+                NamesOf::Markers => markers,
+            };
+            if !known.contains(name) {
+                let fault =
+                    SpecFault::UnknownName { of, found: name.clone(), known: known.to_vec() };
+                found.push(SpecError { entry: Some(entry), ..SpecError::of(field, fault) });
+            }
+        };
+        for name in &spec.locked {
+            let index = self.locked.iter().position(|own| own == name).unwrap_or_default();
+            look("locked", index.to_string(), name, NamesOf::Shapes);
+        }
+        for name in spec.importance.keys() {
+            look("importance", name.clone(), name, NamesOf::Markers);
+        }
+        for name in spec.bounds.keys() {
+            look("bounds", name.clone(), name, NamesOf::Shapes);
+        }
+        found
     }
 }
 

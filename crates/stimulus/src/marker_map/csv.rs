@@ -2,6 +2,9 @@
 
 use super::{MapFileError, MappedMarker, MarkerMap, MarkerPlace};
 
+/// Letters of a wrong header that a message shows.
+const MOST_SHOWN: usize = 60;
+
 pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
     let wrong = |line: usize, what: String, remedy: &'static str| MapFileError {
         place: format!("line {}", line + 1),
@@ -11,7 +14,10 @@ pub(super) fn read(text: &str) -> Result<MarkerMap, MapFileError> {
     let mut lines = text.lines().enumerate();
     let header = lines.next().map_or("", |(_, line)| line).trim();
     if header.split(',').map(str::trim).collect::<Vec<_>>() != ["marker", "role", "vertex"] {
-        return Err(wrong(0, format!("header {header:?}"), "open with marker,role,vertex"));
+        let shown: String = header.chars().take(MOST_SHOWN).collect();
+        let more = if shown.len() < header.len() { " …" } else { "" };
+        let what = format!("header {shown:?}{more}");
+        return Err(wrong(0, what, "open with marker,role,vertex"));
     }
     let mut map = MarkerMap::default();
     for (number, line) in lines {

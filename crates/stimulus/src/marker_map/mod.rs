@@ -153,10 +153,46 @@ impl MarkerMap {
         Ok(map)
     }
 
+    /// The same of a file's bytes, which may be something else altogether.
+    ///
+    /// # Errors
+    /// As [`MarkerMap::from_text`]; a capture, an avatar or a text that is not UTF-8 is named as what it is.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, MapFileError> {
+        let is_another = |what: String, remedy| {
+            Err(MapFileError { place: "marker map".to_owned(), what, remedy })
+        };
+        if bytes.starts_with(b"glTF") {
+            return is_another(
+                "the file is an avatar (GLB), no marker map".to_owned(),
+                "name the file that says where each marker sits on the avatar",
+            );
+        }
+        match std::str::from_utf8(bytes) {
+            Ok(text) if is_map(text) => Self::from_text(text),
+            text => match (mimique_mocap::recognise(bytes), text) {
+                (Some(format), _) => is_another(
+                    format!("the file is a capture ({}), no marker map", format.name),
+                    "name the file that says where each marker sits on the avatar; `mimique preview` writes one",
+                ),
+                (None, Ok(text)) => Self::from_text(text),
+                (None, Err(error)) => is_another(
+                    format!("byte {}: not UTF-8", error.valid_up_to()),
+                    "save the map as UTF-8 text, JSON or CSV",
+                ),
+            },
+        }
+    }
+
     /// The label of every face marker, in order.
     pub fn face_labels(&self) -> impl Iterator<Item = &str> {
         self.face.iter().map(|m| m.label.as_str())
     }
+}
+
+/// Whether a text opens as a map does, in either form.
+fn is_map(text: &str) -> bool {
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    text.starts_with('{') || text.starts_with("marker,")
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod avatar_key;
 mod builtin;
 mod cache;
 mod exertion;
+mod faults;
 mod known;
 mod solved_clip;
 mod sound;
@@ -28,6 +29,7 @@ use mimique_study::{AvatarLook, Clip, Study};
 pub use self::advice::{AdvisedMethod, advised_methods};
 pub use self::avatar_key::avatar_key;
 use self::cache::{Cache, StoredPack};
+pub use self::faults::source_faults;
 use self::solved_clip::{Wanted, to_solve};
 pub use self::sound::{StudySound, study_sounds};
 use self::source_files::{AvatarFile, Performance, Recording, Video};
@@ -111,14 +113,15 @@ impl Places {
 /// Prepares every clip of a study that `mimique check` has found free of errors.
 ///
 /// # Errors
-/// [`PrepareError`] with the JSON pointer of the part at fault: a file that is absent or damaged, a
-/// marker map that does not fit, frames outside the capture, a method that does not solve.
+/// Every fault that is found, at least one, each with the JSON pointer of the part at fault: first of all files,
+/// where one is absent or damaged, a marker map does not fit, frames are outside the capture; where the files are
+/// sound, of the clips, whose method does not solve.
 pub fn prepare(
     study: &Study,
     places: &Places,
     progress: &mut dyn FnMut(Progress<'_>),
-) -> Result<Prepared, PrepareError> {
-    let cache = Cache::open(&places.packs)?;
+) -> Result<Prepared, Vec<PrepareError>> {
+    let cache = Cache::open(&places.packs).map_err(|fault| vec![fault])?;
     let key = known::key(study, places);
     if let Some(known) = key.as_ref().and_then(|key| known::find(&cache, key)) {
         let clips = known.clips.len();
@@ -126,29 +129,39 @@ pub fn prepare(
         return Ok(known);
     }
     let sources = Sources::new(study, places);
+    let mut found = faults::of_sources(study, &sources);
+    if !found.is_empty() {
+        return Err(found);
+    }
     let clips = study.clips();
     let levels = study.level_clips();
     let at_rest = study.clips_at_rest();
     let total = clips.len() + levels.len() + at_rest.len();
     let mut ready = BTreeMap::new();
     let mut remarks = Remarks::default();
+    let mut keep = |id: &str, source: Result<ClipSource, PrepareError>| match source {
+        Ok(source) => drop(ready.insert(id.to_owned(), source)),
+        Err(fault) => faults::add(&mut found, [fault]),
+    };
     for (done, clip) in clips.iter().enumerate() {
         progress(Progress { done, total, what: &clip.id });
-        let source = prepare_clip(study, clip, None, &sources, &cache, &mut remarks)?;
-        let source = sound::with_sound(study, clip, &sources, &cache, source)?;
-        ready.insert(clip.id.clone(), source);
+        let source = prepare_clip(study, clip, None, &sources, &cache, &mut remarks)
+            .and_then(|source| sound::with_sound(study, clip, &sources, &cache, source));
+        keep(&clip.id, source);
     }
     // Browsers solve a level when its answers ask for it; what they must find is known beforehand.
     for (done, level) in levels.iter().enumerate() {
         progress(Progress { done: clips.len() + done, total, what: &level.clip.id });
         let spec = Some(&level.method.spec);
-        let source = prepare_clip(study, &level.clip, spec, &sources, &cache, &mut remarks)?;
-        ready.insert(level.clip.id.clone(), source);
+        let source = prepare_clip(study, &level.clip, spec, &sources, &cache, &mut remarks);
+        keep(&level.clip.id, source);
     }
     for (done, (clip, block)) in at_rest.iter().enumerate() {
         progress(Progress { done: clips.len() + levels.len() + done, total, what: &clip.id });
-        let source = at_rest::clip_at_rest(study, clip, block, &sources, &cache)?;
-        ready.insert(clip.id.clone(), source);
+        keep(&clip.id, at_rest::clip_at_rest(study, clip, block, &sources, &cache));
+    }
+    if !found.is_empty() {
+        return Err(found);
     }
     progress(Progress { done: total, total, what: "packs" });
     let mut warnings = remarks.warnings;
@@ -156,7 +169,7 @@ pub fn prepare(
     warnings.retain(|warning| said.insert(warning.clone()));
     let prepared = Prepared { clips: ready, warnings };
     if let Some(key) = &key {
-        known::keep(&cache, key, sources.asked(), &prepared)?;
+        known::keep(&cache, key, sources.asked(), &prepared).map_err(|fault| vec![fault])?;
     }
     Ok(prepared)
 }

@@ -30,8 +30,8 @@ use crate::{
 pub(super) struct Sources<'a> {
     study: &'a Study,
     places: &'a Places,
-    avatars: RefCell<BTreeMap<String, Rc<AvatarFile>>>,
-    captures: RefCell<BTreeMap<String, Rc<CaptureFile>>>,
+    avatars: RefCell<BTreeMap<String, Result<Rc<AvatarFile>, PrepareError>>>,
+    captures: RefCell<BTreeMap<String, Result<Rc<CaptureFile>, PrepareError>>>,
     trainings: RefCell<BTreeMap<String, Rc<Training>>>,
     asked: Asked,
     /// Weights of exertions, by their captures.
@@ -52,8 +52,14 @@ impl<'a> Sources<'a> {
     /// The avatar of that identifier.
     pub fn avatar(&self, id: &str) -> Result<Rc<AvatarFile>, PrepareError> {
         if let Some(found) = self.avatars.borrow().get(id) {
-            return Ok(found.clone());
+            return found.clone();
         }
+        let read = self.read_avatar(id).map(Rc::new);
+        self.avatars.borrow_mut().insert(id.to_owned(), read.clone());
+        read
+    }
+
+    fn read_avatar(&self, id: &str) -> Result<AvatarFile, PrepareError> {
         let at = |field: &str| pointer(&["stimuli", "avatars", id, field]);
         let source = self.study.stimuli.avatars.get(id).and_then(|a| a.source());
         let mut locked = Vec::new();
@@ -89,10 +95,7 @@ impl<'a> Sources<'a> {
         } else {
             (key, avatar)
         };
-        let file =
-            Rc::new(AvatarFile { key, avatar, locked, sites, skin: OnceCell::new(), pointer });
-        self.avatars.borrow_mut().insert(id.to_owned(), file.clone());
-        Ok(file)
+        Ok(AvatarFile { key, avatar, locked, sites, skin: OnceCell::new(), pointer })
     }
 
     /// The video that a clip shows; `None` for a clip of a head.
@@ -119,38 +122,64 @@ impl<'a> Sources<'a> {
         segment: &str,
         avatar: &Rc<AvatarFile>,
     ) -> Result<Performance, PrepareError> {
-        let (segment, at) = self.segment(segment)?;
-        let capture_pointer = pointer(&["stimuli", "captures", &segment.capture]);
-        let file = self.capture(segment, &at)?;
-        let entry = &self.study.stimuli.captures[&segment.capture];
-        let (map, map_key) = self.marker_map(&segment.capture, &file, avatar)?;
-        let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
+        match self.examined(segment, avatar) {
+            (Some(performance), faults) => {
+                faults.into_iter().next().map_or_else(|| Ok(performance), Err)
+            }
+            (None, mut faults) => Err(faults.remove(0)),
+        }
+    }
+
+    /// The same with everything that is wrong with its parts, each looked at by itself. There is a performance
+    /// where capture and map can be read, without what is at fault beside them, and at least one fault where
+    /// there is none.
+    pub fn examined(
+        &self,
+        segment: &str,
+        avatar: &Rc<AvatarFile>,
+    ) -> (Option<Performance>, Vec<PrepareError>) {
+        let (segment, at) = match self.segment(segment) {
+            Ok(found) => found,
+            Err(fault) => return (None, vec![fault]),
+        };
+        let id = &segment.capture;
+        let capture_pointer = pointer(&["stimuli", "captures", id]);
+        let Some(entry) = self.study.stimuli.captures.get(id) else {
+            let message = format!("no capture {id:?}; add it");
+            return (None, vec![PrepareError::new("/stimuli/captures", message)]);
+        };
+        let mut faults = Vec::new();
+        let map = sound(self.marker_map(id, entry, avatar), &mut faults);
+        let gaze = sound(self.gaze(segment), &mut faults).flatten();
+        let Some(file) = sound(self.capture(segment, &at), &mut faults) else {
+            return (None, faults);
+        };
         let shown = |[first, end]: [usize; 2]| file.frames.shown(first..end);
-        let neutral = entry
-            .neutral
-            .map(shown)
-            .transpose()
-            .map_err(|e| PrepareError::new(format!("{capture_pointer}/neutral"), e))?;
+        let neutral = entry.neutral.map(shown).transpose();
+        let neutral =
+            neutral.map_err(|e| PrepareError::new(format!("{capture_pointer}/neutral"), e));
+        let neutral = sound(neutral, &mut faults).flatten();
+        let frames = match (segment.span(), &file.known) {
+            (Some(Span::Frames { first, end }), None) => {
+                file.frames.shown(first..end).map_err(|e| PrepareError::new(&at, e))
+            }
+            (Some(Span::Performance(_)), Some((_, played))) => Ok(played.clone()),
+            _ => Err(PrepareError::new(
+                &at,
+                "give first and end for a file, performance for a built-in actor",
+            )),
+        };
+        let frames = sound(frames, &mut faults).unwrap_or_default();
+        let Some((map, map_key)) = map else { return (None, faults) };
+        let head = if entry.head.is_empty() { file.head.clone() } else { entry.head.clone() };
         let known = file.known.as_ref().map(|(neutral, _)| neutral.clone());
         let options = TakeOptions {
             neutral: neutral.or(known),
             head: (!head.is_empty()).then_some(head),
             repair: file.repair.clone(),
-            gaze: self.gaze(segment)?,
+            gaze,
             head_motion: entry.head_motion_shown(),
             ..TakeOptions::default()
-        };
-        let frames = match (segment.span(), &file.known) {
-            (Some(Span::Frames { first, end }), None) => {
-                file.frames.shown(first..end).map_err(|e| PrepareError::new(&at, e))?
-            }
-            (Some(Span::Performance(_)), Some((_, played))) => played.clone(),
-            _ => {
-                return Err(PrepareError::new(
-                    at,
-                    "give first and end for a file, performance for a built-in actor",
-                ));
-            }
         };
         let take_key = Provenance::default()
             .json("capture", file.key.as_str())
@@ -160,7 +189,7 @@ impl<'a> Sources<'a> {
             .json("gaze", json!(options.gaze.as_ref().map(GivenGaze::key)))
             .json("headMotion", options.head_motion)
             .hash();
-        Ok(Performance {
+        let performance = Performance {
             pointer: at,
             capture_pointer,
             head_lowpass_hz: entry.head_lowpass_hz,
@@ -174,25 +203,28 @@ impl<'a> Sources<'a> {
             capture: file,
             map,
             options,
-        })
+        };
+        (Some(performance), faults)
     }
 
     /// The marker map of a capture and what it is known by.
     fn marker_map(
         &self,
         capture: &str,
-        file: &CaptureFile,
+        entry: &mimique_study::Capture,
         avatar: &AvatarFile,
     ) -> Result<(MarkerMap, String), PrepareError> {
         let at = pointer(&["stimuli", "captures", capture, "markers"]);
-        match (&self.study.stimuli.captures[capture].markers, &avatar.sites) {
+        match (&entry.markers, &avatar.sites) {
             (Some(path), _) => {
                 let (path, bytes) = self.read(path, &at)?;
-                let map = MarkerMap::from_text(&String::from_utf8_lossy(&bytes))
+                let map = MarkerMap::from_bytes(&bytes)
                     .map_err(|e| PrepareError::new(&at, format!("{}: {e}", path.display())))?;
                 Ok((map, sha256_hex(&bytes)))
             }
-            (None, Some(sites)) if file.known.is_some() => Ok((sites.clone(), "sites".to_owned())),
+            (None, Some(sites)) if matches!(entry.source(), Some(CaptureSource::Builtin(_))) => {
+                Ok((sites.clone(), "sites".to_owned()))
+            }
             (None, _) => Err(PrepareError::new(
                 at,
                 "no marker map; name the file that says where each marker sits on the avatar",
@@ -432,29 +464,12 @@ impl<'a> Sources<'a> {
     /// The capture of a segment; for a built-in actor the take of its performance.
     fn capture(&self, segment: &Segment, at: &str) -> Result<Rc<CaptureFile>, PrepareError> {
         let id = &segment.capture;
-        let entry = self.study.stimuli.captures.get(id);
-        let (name, file) = match (entry.and_then(|c| c.source()), segment.span()) {
-            (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
-                let name = json!([id, what]).to_string();
-                if let Some(found) = self.captures.borrow().get(&name) {
-                    return Ok(found.clone());
-                }
-                let take = builtin::take(actor, what);
-                let file = CaptureFile {
-                    head: take.head,
-                    known: Some((take.neutral, take.played)),
-                    ..CaptureFile::new(builtin::take_key(&take.capture), take.capture)
-                };
-                (name, file)
+        let source = self.study.stimuli.captures.get(id).and_then(|capture| capture.source());
+        let name = match (source, segment.span()) {
+            (Some(CaptureSource::Builtin(_)), Some(Span::Performance(what))) => {
+                json!([id, what]).to_string()
             }
-            (Some(CaptureSource::File(path)), Some(Span::Frames { .. })) => {
-                if let Some(found) = self.captures.borrow().get(id) {
-                    return Ok(found.clone());
-                }
-                let at = pointer(&["stimuli", "captures", id]);
-                let (key, capture, repair) = self.read_capture(path, entry, &at)?;
-                (id.clone(), CaptureFile { repair, ..CaptureFile::new(key, capture) })
-            }
+            (Some(CaptureSource::File(_)), Some(Span::Frames { .. })) => id.clone(),
             (None, _) => {
                 let message = "give exactly one of builtin, file and exertion";
                 return Err(PrepareError::new(pointer(&["stimuli", "captures", id]), message));
@@ -464,15 +479,38 @@ impl<'a> Sources<'a> {
                 return Err(PrepareError::new(at, message));
             }
         };
-        let file = match entry.and_then(|c| c.rate_hz) {
-            Some(rate_hz) => {
-                file.at_rate(rate_hz, &pointer(&["stimuli", "captures", id, "rateHz"]))?
+        if let Some(found) = self.captures.borrow().get(&name) {
+            return found.clone();
+        }
+        let read = self.capture_read(segment).map(Rc::new);
+        self.captures.borrow_mut().insert(name, read.clone());
+        read
+    }
+
+    /// The same, read or performed, at the rate that is shown.
+    fn capture_read(&self, segment: &Segment) -> Result<CaptureFile, PrepareError> {
+        let id = &segment.capture;
+        let entry = self.study.stimuli.captures.get(id);
+        let at = pointer(&["stimuli", "captures", id]);
+        let file = match (entry.and_then(|c| c.source()), segment.span()) {
+            (Some(CaptureSource::Builtin(actor)), Some(Span::Performance(what))) => {
+                let take = builtin::take(actor, what);
+                CaptureFile {
+                    head: take.head,
+                    known: Some((take.neutral, take.played)),
+                    ..CaptureFile::new(builtin::take_key(&take.capture), take.capture)
+                }
             }
-            None => file,
+            (Some(CaptureSource::File(path)), _) => {
+                let (key, capture, repair) = self.read_capture(path, entry, &at)?;
+                CaptureFile { repair, ..CaptureFile::new(key, capture) }
+            }
+            _ => return Err(PrepareError::new(at, "give exactly one of builtin and file")),
         };
-        let file = Rc::new(file);
-        self.captures.borrow_mut().insert(name, file.clone());
-        Ok(file)
+        match entry.and_then(|c| c.rate_hz) {
+            Some(rate_hz) => file.at_rate(rate_hz, &format!("{at}/rateHz")),
+            None => Ok(file),
+        }
     }
 
     /// The capture of a file, and what it is known by.
@@ -519,6 +557,11 @@ impl<'a> Sources<'a> {
         let bytes = std::fs::read(&path).map_err(|e| unread(&path, &e, at))?;
         Ok((path, bytes))
     }
+}
+
+/// What a part is where it is sound; what is wrong with it goes to the faults.
+fn sound<T>(part: Result<T, PrepareError>, faults: &mut Vec<PrepareError>) -> Option<T> {
+    part.map_err(|fault| faults.push(fault)).ok()
 }
 
 /// Frames of recorded weights.

@@ -9,7 +9,7 @@ use mimique_solver::FrontEnd;
 
 use super::SolveError;
 use super::joined::{JoinedTake, metres, some};
-use crate::GivenGaze;
+use crate::{AvatarSkin, GivenGaze};
 
 /// Half of the distance between the eyes where the avatar has no eyeballs, metres: half of the mean of adults, 63 mm
 /// (Dodgson, Variation and extrema of human interpupillary distance, 2004).
@@ -34,6 +34,28 @@ impl JoinedGaze {
     }
 }
 
+/// The shapes that turn the eyes as a gaze is given.
+///
+/// # Errors
+/// [`SolveError`] where no shape turns them, or what is looked at is not in the capture.
+pub(crate) fn given_gaze(
+    skin: &AvatarSkin,
+    capture: &Capture,
+    given: &GivenGaze,
+) -> Result<GazeShapes, SolveError> {
+    let shapes = GazeShapes::of(&skin.shape_names);
+    if shapes.is_empty() {
+        return Err(SolveError::NoGazeShapes);
+    }
+    match given {
+        GivenGaze::Target(label) if capture.marker_index(label).is_none() => {
+            let capture = some(capture.labels.iter().map(String::as_str));
+            Err(SolveError::NoGazeTarget { label: label.clone(), capture })
+        }
+        _ => Ok(shapes),
+    }
+}
+
 impl JoinedTake<'_> {
     /// The given gaze; a marker that is looked at as a column after the others.
     pub(crate) fn add_gaze(
@@ -41,17 +63,10 @@ impl JoinedTake<'_> {
         capture: &Capture,
         given: &GivenGaze,
     ) -> Result<(), SolveError> {
-        let shapes = GazeShapes::of(&self.skin.shape_names);
-        if shapes.is_empty() {
-            return Err(SolveError::NoGazeShapes);
-        }
+        let shapes = given_gaze(self.skin, capture, given)?;
         let names = shapes.shapes().into_iter().map(|k| self.skin.shape_names[k].clone()).collect();
         let mut target = None;
         if let GivenGaze::Target(label) = given {
-            if capture.marker_index(label).is_none() {
-                let capture = some(capture.labels.iter().map(String::as_str));
-                return Err(SolveError::NoGazeTarget { label: label.clone(), capture });
-            }
             let column = self.labels.iter().position(|l| l == label).unwrap_or_else(|| {
                 self.labels.push(label.clone());
                 self.labels.len() - 1

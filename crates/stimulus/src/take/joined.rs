@@ -9,10 +9,11 @@ use mimique_solver::{
     Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth,
     SurfaceResponse,
 };
+use mimique_study::text::counted;
 
 use super::adjustments::{refuse_flat, scale_rule};
 use super::found_neutral::found_neutral;
-use super::gaze::JoinedGaze;
+use super::gaze::{JoinedGaze, given_gaze};
 use super::lids::JoinedLid;
 use super::{SolveError, TakeOptions, Training};
 use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule};
@@ -78,20 +79,12 @@ impl<'a> JoinedTake<'a> {
             return Err(SolveError::NoFrames);
         }
         let mut warnings = Vec::new();
-        let (lid_places, resolved): (Vec<_>, Vec<_>) = (map.resolve(skin)?.into_iter())
-            .partition(|site| map.lids.iter().any(|lid| lid.marker == site.label));
-        let (markers, absent): (Vec<_>, Vec<_>) =
-            resolved.into_iter().partition(|site| capture.marker_index(&site.label).is_some());
-        if markers.is_empty() {
-            return Err(SolveError::NoCommonLabel {
-                map: some(map.face_labels()),
-                capture: some(capture.labels.iter().map(String::as_str)),
-            });
-        }
+        let FaceSites { lid_places, markers, absent } = face_sites(skin, capture, map)?;
         if !absent.is_empty() {
             warnings.push(format!(
-                "{} markers of the map are not in the capture: {}",
-                absent.len(),
+                "{} of the map {} not in the capture: {}",
+                counted(absent.len(), "marker"),
+                if absent.len() == 1 { "is" } else { "are" },
                 some(absent.iter().map(|site| site.label.as_str()))
             ));
         }
@@ -116,6 +109,33 @@ impl<'a> JoinedTake<'a> {
             joined.warnings.extend(joined.gaze_beyond_eyes());
         }
         Ok(joined)
+    }
+
+    /// All that is wrong with map, capture and avatar together, each part looked at by itself; nothing where
+    /// they can be joined.
+    pub(crate) fn faults(
+        skin: &AvatarSkin,
+        capture: &Capture,
+        map: &MarkerMap,
+        options: &TakeOptions,
+    ) -> Vec<SolveError> {
+        if capture.frames() == 0 {
+            return vec![SolveError::NoFrames];
+        }
+        let mut found = Vec::new();
+        match face_sites(skin, capture, map) {
+            Err(fault) => found.push(fault),
+            Ok(FaceSites { markers, .. }) => {
+                let labels: Vec<String> = markers.into_iter().map(|site| site.label).collect();
+                if options.depth.unwrap_or(map.depth) == Depth::Measured {
+                    found.extend(refuse_flat(&metres(capture, &labels)).err());
+                }
+                found.extend(fits(&scale_rule(options, map), &labels, capture.frames()).err());
+            }
+        }
+        found.extend(head_is_there(options.head.as_ref().unwrap_or(&map.head), capture).err());
+        found.extend(options.gaze.as_ref().and_then(|gaze| given_gaze(skin, capture, gaze).err()));
+        found
     }
 
     /// Another take of the same markers on the same skin, such as the one that is learnt from.
@@ -318,14 +338,9 @@ fn columns_of(
 ) -> Result<(Vec<String>, MarkerColumns), SolveError> {
     let mut labels: Vec<String> = markers.iter().map(|site| site.label.clone()).collect();
     let face = (0..labels.len()).collect();
+    head_is_there(head, capture)?;
     let mut head_columns = Vec::new();
     for label in head {
-        if capture.marker_index(label).is_none() {
-            return Err(SolveError::NoHeadMarker {
-                label: label.clone(),
-                capture: some(capture.labels.iter().map(String::as_str)),
-            });
-        }
         let column = labels.iter().position(|l| l == label).unwrap_or_else(|| {
             labels.push(label.clone());
             labels.len() - 1
@@ -334,6 +349,46 @@ fn columns_of(
     }
     let head = (!head_columns.is_empty()).then_some(head_columns);
     Ok((labels, MarkerColumns { face, head }))
+}
+
+/// A map's markers on the skin.
+struct FaceSites {
+    /// Of the lids' markers.
+    lid_places: Vec<MarkerSite>,
+    /// Of the face markers that the capture has.
+    markers: Vec<MarkerSite>,
+    /// Of those that it has not.
+    absent: Vec<MarkerSite>,
+}
+
+/// Where the map's markers are on the skin, and which of them are in the capture.
+fn face_sites(
+    skin: &AvatarSkin,
+    capture: &Capture,
+    map: &MarkerMap,
+) -> Result<FaceSites, SolveError> {
+    let (lid_places, resolved): (Vec<_>, Vec<_>) = (map.resolve(skin)?.into_iter())
+        .partition(|site| map.lids.iter().any(|lid| lid.marker == site.label));
+    let (markers, absent): (Vec<_>, Vec<_>) =
+        resolved.into_iter().partition(|site| capture.marker_index(&site.label).is_some());
+    if markers.is_empty() {
+        return Err(SolveError::NoCommonLabel {
+            map: some(map.face_labels()),
+            capture: some(capture.labels.iter().map(String::as_str)),
+        });
+    }
+    Ok(FaceSites { lid_places, markers, absent })
+}
+
+/// Whether the capture has all of the head's markers.
+fn head_is_there(head: &[String], capture: &Capture) -> Result<(), SolveError> {
+    let absent: Vec<String> =
+        head.iter().filter(|label| capture.marker_index(label).is_none()).cloned().collect();
+    if absent.is_empty() {
+        return Ok(());
+    }
+    let capture = some(capture.labels.iter().map(String::as_str));
+    Err(SolveError::NoHeadMarker { labels: absent, capture })
 }
 
 /// Whether scale factors are of markers and frames that there are.

@@ -24,13 +24,14 @@ pub enum SolveError {
         /// Some labels of the capture.
         capture: String,
     },
-    /// A head marker that the capture does not have.
+    /// Head markers that the capture does not have.
     #[error(
-        "head marker {label}: not in the capture, which has {capture}; name markers of the capture"
+        "head {} {}: not in the capture, which has {capture}; name markers of the capture",
+        if .labels.len() == 1 { "marker" } else { "markers" }, .labels.join(", ")
     )]
     NoHeadMarker {
-        /// The label.
-        label: String,
+        /// The labels.
+        labels: Vec<String>,
         /// Some labels of the capture.
         capture: String,
     },

@@ -3,7 +3,7 @@
 use super::conditions::{self, Asks};
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::values::Nearest;
+use super::values::{Counted, Nearest};
 use super::{Subject, compared};
 use crate::practice::right_answers;
 use crate::question::Question;
@@ -141,7 +141,9 @@ fn time_limits(subject: &Subject<'_>, issues: &mut Issues) {
         if limit.extensions < 10 && limit.essential.is_none() {
             issues.warning(
                 below(&pointer, "extensions"),
-                Problem::HardTimeLimit { extensions: limit.extensions },
+                Problem::HardTimeLimit {
+                    extensions: Counted(limit.extensions as usize, "extension"),
+                },
             );
         }
     }

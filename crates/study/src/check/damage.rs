@@ -154,7 +154,7 @@ fn touches(place: &str, issue: &Issue) -> bool {
 }
 
 /// Whether a pointer is at or below another.
-fn is_within(pointer: &str, outer: &str) -> bool {
+pub(super) fn is_within(pointer: &str, outer: &str) -> bool {
     pointer.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 

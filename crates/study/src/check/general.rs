@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::Subject;
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::values::{Names, Nearest};
+use super::values::{Counted, Names, Nearest};
 use crate::columns::is_reserved_column;
 use crate::instant::instant_ms;
 use crate::question::Question;
@@ -112,7 +112,7 @@ fn translation(
                     &pointer,
                     Problem::IncompleteTranslation {
                         language: language.to_owned(),
-                        count: names.len(),
+                        count: Counted(names.len(), "text"),
                         some: Names::of(names.iter().take(3)),
                     },
                 );

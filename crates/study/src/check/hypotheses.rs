@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::values::{Count, Nearest};
+use super::values::{Count, Counted, Nearest};
 use super::{Subject, assigned, responses};
 use crate::columns::ASSIGNED_CONDITION;
 use crate::question::{KindOfQuestion as _, Question};
@@ -57,7 +57,10 @@ fn generalise(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, iss
     let segments: BTreeSet<&str> = subject.clips.iter().map(|clip| clip.segment.as_str()).collect();
     if segments.len() < SEGMENTS {
         let found = segments.len();
-        issues.error(&place, Problem::TooFewSegments { segments: found, needed: SEGMENTS });
+        issues.error(
+            &place,
+            Problem::TooFewSegments { segments: Counted(found, "segment"), needed: SEGMENTS },
+        );
     }
 }
 
@@ -172,7 +175,10 @@ fn factors(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues
     if !wanted.contains(&hypothesis.factors.len()) {
         issues.error(
             &place,
-            Problem::FactorCount { factors: hypothesis.factors.len(), wanted: Count(wanted) },
+            Problem::FactorCount {
+                factors: Counted(hypothesis.factors.len(), "factor"),
+                wanted: Count(wanted),
+            },
         );
     }
     for (index, factor) in hypothesis.factors.iter().enumerate() {
@@ -218,8 +224,8 @@ fn levels(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues:
     if (two && count != 2) || count < 2 {
         let factor = factor.clone();
         let problem = match two {
-            true => Problem::NotTwoLevels { levels: count, factor },
-            false => Problem::TooFewLevels { levels: count, factor },
+            true => Problem::NotTwoLevels { levels: Counted(count, "level"), factor },
+            false => Problem::TooFewLevels { levels: Counted(count, "level"), factor },
         };
         issues.error(place, problem);
     }

@@ -47,7 +47,7 @@ pub use issue::{Issue, Issues, Severity};
 pub use problem::Problem;
 use schema::Schemas;
 pub use schema::{SCHEMA_ADDRESS, json_schema};
-pub use values::{Count, JsonType, Known, Names, Nearest, Shown, Wanted};
+pub use values::{Count, Counted, JsonType, Known, Names, Nearest, Shown, Wanted};
 
 /// A study that was checked and has no errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,16 +98,31 @@ impl Report {
 /// Whether a file that the study names is there: `Err` says what is wrong, [`Problem::NoFile`] say.
 pub type FileLookup<'a> = dyn Fn(&str) -> Result<(), Problem> + 'a;
 
+/// What is wrong in the files that a study names, found by opening them: faults at places of the study file.
+pub type OpenedFiles<'a> = dyn Fn(&Study) -> Vec<Issue> + 'a;
+
+/// The files that a study names, as the check sees them.
+struct Files<'a> {
+    lookup: &'a FileLookup<'a>,
+    opened: &'a OpenedFiles<'a>,
+}
+
 /// Checks the text of a study file. `lookup` is asked for every file that the study names.
 pub fn check(text: &str, lookup: &FileLookup<'_>) -> Report {
+    check_opened(text, lookup, &|_| Vec::new())
+}
+
+/// The same with what is wrong in the files, which `opened` finds. It is asked whatever else is wrong, as far as the
+/// study can be read; what it finds where something is known to be wrong already is left out.
+pub fn check_opened(text: &str, lookup: &FileLookup<'_>, opened: &OpenedFiles<'_>) -> Report {
     let mut issues = Issues::default();
-    let study = examine(text, lookup, &mut issues);
+    let study = examine(text, &Files { lookup, opened }, &mut issues);
     let issues = issues.into_sorted();
     let errors = issues.iter().any(|issue| issue.severity == Severity::Error);
     Report { issues, study: study.filter(|_| !errors) }
 }
 
-fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<CheckedStudy> {
+fn examine(text: &str, files: &Files<'_>, issues: &mut Issues) -> Option<CheckedStudy> {
     let value = match parse(text) {
         Ok(value) => value,
         Err(error) => {
@@ -122,7 +137,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
         let readable = readable::readable(&Schemas { root: &schema }, &damage.corrected(&value));
         let study = Study::from_value(&readable).ok()?;
         let mut found = Issues::default();
-        examine_study(&study, &value, &config_hash, &texts, lookup, &mut found);
+        examine_study(&study, &value, &config_hash, &texts, files, &mut found);
         for issue in found.into_sorted().into_iter().filter(|issue| damage.leaves(issue)) {
             issues.push(damage.placed(issue));
         }
@@ -136,7 +151,7 @@ fn examine(text: &str, lookup: &FileLookup<'_>, issues: &mut Issues) -> Option<C
             return None;
         }
     };
-    examine_study(&study, &value, &config_hash, &texts, lookup, issues);
+    examine_study(&study, &value, &config_hash, &texts, files, issues);
     Some(CheckedStudy { study, value, config_hash })
 }
 
@@ -146,9 +161,10 @@ fn examine_study(
     value: &Value,
     hash: &str,
     texts: &[String],
-    lookup: &FileLookup<'_>,
+    files: &Files<'_>,
     issues: &mut Issues,
 ) {
+    let lookup = files.lookup;
     let clips = study.clips();
     let subject = Subject { study, value, clips: &clips, hash };
     general::examine(&subject, texts, issues);
@@ -161,6 +177,12 @@ fn examine_study(
     hypotheses::examine(&subject, issues);
     scales::examine(&subject, issues);
     tables::examine(&subject, issues);
+    let known: Vec<String> = issues.errors().map(str::to_owned).collect();
+    for issue in (files.opened)(study) {
+        if !known.iter().any(|place| damage::is_within(&issue.pointer, place)) {
+            issues.push(issue);
+        }
+    }
 }
 
 /// What is checked.

@@ -3,6 +3,7 @@
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::sequence::{all_factors, read_block, selection};
+use super::values::Counted;
 use super::{Subject, compared};
 use crate::columns::PAIR_COLUMNS;
 use crate::question::{KindOfQuestion as _, QuestionKind};
@@ -80,7 +81,13 @@ fn dealt(subject: &Subject<'_>, block: &PairsComponent, pointer: &str, issues: &
         Ok(balance) => {
             let [least, most] = balance.pair_in_cell;
             if most - least > 1 || balance.items_of_slot > 1 {
-                issues.error(place, Problem::UnevenPairs { least, most });
+                issues.error(
+                    place,
+                    Problem::UnevenPairs {
+                        least: Counted(least, "time"),
+                        most: Counted(most, "time"),
+                    },
+                );
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::order::NoOrder;
 use crate::pairs::AnswerOfPair;
 use crate::study_file::{NoCells, PathError, SyntaxError, WrongVariable};
 
-use super::values::{Count, Known, Names, Nearest, Shown, Wanted};
+use super::values::{Count, Counted, Known, Names, Nearest, Shown, Wanted};
 
 /// Each row is a kind of problem: its name and values, its code, what is wrong, what to do about it.
 macro_rules! problems {
@@ -58,8 +58,8 @@ UnknownWord { word: String, words: Names, known: Nearest }: "unknown-word",
     "\"{word}\" is not one of {words}", "{known}";
 WholeNotInRange { found: Value, least: f64, most: f64 }: "out-of-range",
     "{found} is out of range", "write a whole number from {least} to {most}";
-ItemCount { found: usize, wanted: usize }: "wrong-length",
-    "{found} items where {wanted} belong", "write {wanted} items";
+ItemCount { found: Counted, wanted: usize }: "wrong-length",
+    "{found} where {wanted} belong", "write {wanted} items";
 
 // Several parts of the file.
 UnknownReference { what: &'static str, name: String, known: Nearest }: "unknown-reference",
@@ -104,8 +104,8 @@ UnknownText { name: String, known: Nearest }: "unknown-text",
     "no button or message is called \"{name}\"", "{known}";
 WrongPlaceholders { text: String, english: String }: "wrong-placeholders",
     "\"{text}\" has not the words in braces of \"{english}\"", "write each of them once, as it is in English";
-IncompleteTranslation { language: String, count: usize, some: Names }: "incomplete-translation",
-    "{count} texts are not translated: {some}",
+IncompleteTranslation { language: String, count: Counted, some: Names }: "incomplete-translation",
+    "no translation of {count}: {some}",
     "they will be in English; `mimique check --words {language}` prints all of them";
 OneTextForAll { languages: usize }: "one-text-for-all",
     "the same text for {languages} languages", "write one text a language: {{\"en\": \"...\", \"fr\": \"...\"}}";
@@ -172,8 +172,8 @@ CalibratesNothing: "empty", "the calibration asks nothing", "remove \"card\": fa
 OneSideInMillimetres: "incomplete", "one side in millimetres", "give both widthMm and heightMm";
 NoCalibration: "no-calibration", "a size in millimetres on screens that nobody measures",
     "add \"calibration\": {{\"card\": true, \"required\": true}}";
-HardTimeLimit { extensions: u32 }: "hard-time-limit",
-    "{extensions} extensions: people who read or move slowly are shut out (WCAG 2.2, 2.2.1)",
+HardTimeLimit { extensions: Counted }: "hard-time-limit",
+    "{extensions}: people who read or move slowly are shut out (WCAG 2.2, 2.2.1)",
     "allow ten, or say why the limit is essential: \"essential\": \"...\"";
 NotAPracticeClip { clip: String, known: Nearest }: "unknown-reference",
     "\"{clip}\" is no practice clip", "{known}";
@@ -210,8 +210,8 @@ NameTaken { id: String, by: &'static str }: "name-taken",
     "\"{id}\" is the name of {by} already", "call it \"perceived_{id}\", say";
 ChoiceCount { least: usize, most: usize, options: usize }: "bad-range",
     "{least} to {most} of {options} options cannot be chosen", "correct minimum and maximum";
-LabelCount { labels: usize, points: u32 }: "wrong-length",
-    "{labels} labels for {points} points", "write one label per point, or leave labels out";
+LabelCount { labels: Counted, points: u32 }: "wrong-length",
+    "{labels} for {points} points", "write one label per point, or leave labels out";
 Step { step: f64 }: "out-of-range", "a step of {step} leads nowhere",
     "take a step above 0 and no longer than the line";
 NoTextAllowed: "out-of-range", "no text can be written", "take a maxLength above 0";
@@ -219,7 +219,7 @@ EmptySign { value: String }: "empty", "\"{value}\" has neither a sign-language v
     "add \"video\": \"FILE.mp4\", or remove it";
 NoSide { value: String, known: Nearest }: "unknown-reference",
     "\"{value}\" is no option of this comparison", "{known}";
-Points { points: u32 }: "out-of-range", "a scale of {points} points", "take 2 to 101";
+Points { points: Counted }: "out-of-range", "a scale of {points}", "take 2 to 101";
 NoEnds { first: &'static str, missing: String }: "scale-without-ends",
     "a scale without ends: no {missing}", "say what its ends mean: \"{first}\": \"...\"";
 EmptyRange { least: f64, most: f64 }: "bad-range", "from {least} to {most} there is nothing to choose",
@@ -376,8 +376,8 @@ NoNeutral: "no-neutral", "no frames of the neutral face",
     "add \"neutral\": [first, end], or make sure that the capture begins with it";
 NoHead: "no-head", "no head markers: the head's own motion stays in the face's",
     "add \"head\": [three labels or more]";
-FewHeadMarkers { markers: usize }: "too-few",
-    "{markers} head markers do not fix the head", "name three or more";
+FewHeadMarkers { markers: Counted }: "too-few",
+    "{markers}, by which the head is not fixed", "name three or more";
 BuiltinMarkers: "not-needed", "a built-in actor brings its markers along", "remove markers, head and unit";
 SegmentTwice { id: String }: "duplicate", "two segments \"{id}\"", "give it another one";
 Intensity { intensity: u8 }: "out-of-range", "intensity {intensity}", "write 1, 2 or 3";
@@ -459,7 +459,7 @@ CellAmbiguous { why: NoCells }: "cells", "{why}",
     "name the factor in which they differ in \"within\", or give each a level of its own by \"factors\"";
 ShareOfAll: "pairs", "a share of the pairs is asked for, and all of them", "write \"rule\": \"incomplete\", or remove \"perParticipant\"";
 NoDesign { why: DesignError }: "pairs", "{why}", "write another number";
-UnevenPairs { least: usize, most: usize }: "pairs", "a pair is shown {least} times, another one {most} times",
+UnevenPairs { least: Counted, most: Counted }: "pairs", "a pair is shown {least}, another one {most}",
     "ask for another number of pairs";
 TwoSounds { clip: String, other: String }: "two-sounds",
     "\"{clip}\" and \"{other}\" are shown in step, and each has its own sound: which is whose nobody could tell",
@@ -477,8 +477,8 @@ NoCondition { level: String, conditions: String }: "panel", "\"{level}\" is no c
 ScreensByReference: "panel", "the rule of BS.1534 goes by the hidden reference, and the panel has none",
     "name it: \"reference\"";
 LevelsNotAscending: "scaling", "the levels do not ascend", "write each once, from the lowest to the highest";
-LevelCount { levels: usize, fewest: usize, most: usize }: "scaling",
-    "{levels} levels", "take {fewest} to {most}";
+LevelCount { levels: Counted, fewest: usize, most: usize }: "scaling",
+    "{levels}", "take {fewest} to {most}";
 NoJudgement { question: String }: "scaling",
     "\"{question}\" does not say which of two pairs differ more",
     "name a question of type \"singleChoice\" with two options in the order of the file, required, without \"truth\", \"showIf\", \"keys\" and \"attentionCheck\"";
@@ -572,14 +572,14 @@ NoTruthOf { question: String }: "no-truth", "\"{question}\" has no right answer"
     "give the question \"truth\", or test another measure";
 NotTested { question: String }: "not-a-number", "the answers to \"{question}\" are not numbers",
     "test \"measure\": \"correct\" or \"rt\", or take chi-square";
-FactorCount { factors: usize, wanted: Count }: "wrong-length",
-    "{factors} factors for this test", "name {wanted}";
+FactorCount { factors: Counted, wanted: Count }: "wrong-length",
+    "{factors} for this test", "name {wanted}";
 LevelTwice { level: String }: "duplicate",
     "the level \"{level}\" stands here twice", "name each level once";
-NotTwoLevels { levels: usize, factor: String }: "wrong-length",
-    "{levels} levels of \"{factor}\" to compare", "name two in \"levels\"";
-TooFewLevels { levels: usize, factor: String }: "wrong-length",
-    "{levels} levels of \"{factor}\" to compare", "compare at least two";
+NotTwoLevels { levels: Counted, factor: String }: "wrong-length",
+    "{levels} of \"{factor}\" to compare", "name two in \"levels\"";
+TooFewLevels { levels: Counted, factor: String }: "wrong-length",
+    "{levels} of \"{factor}\" to compare", "compare at least two";
 SeveralAnswers { response: String, answers: String }: "several-answers",
     "\"{response}\" gives several answers", "name one of them: {answers}";
 AskedInNoTrial { question: String }: "not-asked",
@@ -603,8 +603,8 @@ RatingOfPair { question: String, factor: String, clip: String, beside: String }:
 NotOfOtherClips { hypothesis: String }: "not-a-number",
     "\"{hypothesis}\" is no comparison of ratings of one person at several levels of the clips, of which alone other clips are asked about",
     "take \"wilcoxon\" or \"friedman\" of a rating by a factor of the clips, or leave out \"generalise\"";
-TooFewSegments { segments: usize, needed: usize }: "wrong-length",
-    "{segments} segments, of which a mixed model cannot tell how far others would differ",
+TooFewSegments { segments: Counted, needed: usize }: "wrong-length",
+    "{segments}, of which a mixed model cannot tell how far others would differ",
     "show at least {needed} segments, or leave out \"generalise\"";
 NoSmallestEffect { hypothesis: String }: "missing-key",
     "\"{hypothesis}\" tests equivalence without the smallest difference that matters",
@@ -619,8 +619,8 @@ SmallestEffectAsWide { value: f64, widest: f64 }: "out-of-range",
 NoReasonOfSmallestEffect { hypothesis: String }: "no-reason",
     "nothing says why a smaller difference of \"{hypothesis}\" does not matter",
     "add \"smallestEffectReason\", which the preregistration prints";
-TooFewItems { items: usize, needed: usize }: "wrong-length",
-    "{items} questions are no scale", "name at least {needed}";
+TooFewItems { items: Counted, needed: usize }: "wrong-length",
+    "{items}, which make no scale", "name at least {needed}";
 ItemWithoutNumber { question: String }: "not-a-number",
     "\"{question}\" is not answered by a number, so that it cannot be added up",
     "name a rating, a typed number, or a row of a matrix whose options are numbers";
@@ -694,7 +694,7 @@ impl From<PathError> for Problem {
 }
 
 impl From<SyntaxError> for Problem {
-    fn from(SyntaxError { place, what }: SyntaxError) -> Self {
-        Self::Syntax { place, what, remedy: SyntaxError::REMEDY }
+    fn from(SyntaxError { place, what, remedy }: SyntaxError) -> Self {
+        Self::Syntax { place, what, remedy }
     }
 }

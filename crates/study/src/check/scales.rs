@@ -2,6 +2,7 @@
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
+use super::values::Counted;
 use super::{Subject, responses};
 use crate::question::KindOfQuestion as _;
 use crate::study_file::{CompositeScale, Study};
@@ -20,7 +21,10 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
 fn items(subject: &Subject<'_>, scale: &CompositeScale, pointer: &str, issues: &mut Issues) {
     let place = below(pointer, "items");
     if scale.items.len() < ITEMS {
-        issues.error(&place, Problem::TooFewItems { items: scale.items.len(), needed: ITEMS });
+        issues.error(
+            &place,
+            Problem::TooFewItems { items: Counted(scale.items.len(), "question"), needed: ITEMS },
+        );
     }
     let mut in_trials = None;
     for (index, item) in scale.items.iter().enumerate() {

@@ -3,6 +3,7 @@
 use super::issue::{Issues, below};
 use super::problem::Problem;
 use super::sequence::read_block;
+use super::values::Counted;
 use super::{Subject, compared, levels, reverse_correlation};
 use crate::columns::{SCALING_COLUMNS, WEIGHTS_EXPECTED_COLUMN};
 use crate::question::{KindOfQuestion as _, OptionOrder, QuestionKind};
@@ -31,7 +32,7 @@ pub(super) fn examine(
     let count = block.levels.len();
     if !LEVELS.contains(&count) {
         let (fewest, most) = (*LEVELS.start(), *LEVELS.end());
-        issues.error(&place, Problem::LevelCount { levels: count, fewest, most });
+        issues.error(&place, Problem::LevelCount { levels: Counted(count, "level"), fewest, most });
     } else if !block.levels.is_sorted_by(|one, next| one < next) {
         issues.error(&place, Problem::LevelsNotAscending);
     }

@@ -7,6 +7,7 @@ use mimique_solver::Method;
 use super::exertion::SLOWEST_HZ;
 use super::issue::{Issues, below};
 use super::problem::Problem;
+use super::values::Counted;
 use super::{FileLookup, Subject, avatars, exertion};
 use crate::columns::is_reserved_column;
 use crate::question::KindOfQuestion as _;
@@ -129,7 +130,10 @@ fn recorded(capture: &Capture, only_played: bool, pointer: &str, issues: &mut Is
                 issues.warning(pointer, Problem::NoHead);
             }
             count @ 1..3 => {
-                issues.error(below(pointer, "head"), Problem::FewHeadMarkers { markers: count });
+                issues.error(
+                    below(pointer, "head"),
+                    Problem::FewHeadMarkers { markers: Counted(count, "head marker") },
+                );
             }
             _ => {}
         }

@@ -7,7 +7,7 @@ use super::issue::{Issues, below};
 use super::nearest::nearest;
 use super::problem::Problem;
 use super::schema::{Schemas, has_one, types_of, whole_range, words};
-use super::values::{JsonType, Names, Nearest, Shown, Wanted};
+use super::values::{Counted, JsonType, Names, Nearest, Shown, Wanted};
 
 /// Examines a file; returns the pointers of all its localised texts, and what cannot be read.
 pub(super) fn examine(schema: &Value, value: &Value, issues: &mut Issues) -> (Vec<String>, Damage) {
@@ -124,7 +124,7 @@ impl<'a> Walk<'a> {
             || limit("maxItems").is_some_and(|most| items.len() > most)
         {
             let wanted = limit("minItems").unwrap_or_default();
-            self.fault(pointer, Problem::ItemCount { found: items.len(), wanted });
+            self.fault(pointer, Problem::ItemCount { found: Counted(items.len(), "item"), wanted });
         }
         if let Some(schema) = part.get("items") {
             for (index, item) in items.iter().enumerate() {

@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 
 use serde_json::Value;
 
+use crate::text::counted;
+
 use super::nearest::nearest;
 
 /// Names to choose from: `"a", "b" or "c"`.
@@ -90,6 +92,16 @@ impl fmt::Display for Count {
             (least, most) if least == most => write!(formatter, "{least}"),
             (least, most) => write!(formatter, "{least} to {most}"),
         }
+    }
+}
+
+/// A number of things that are called so: `1 label`, `2 labels`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Counted(pub(crate) usize, pub(crate) &'static str);
+
+impl fmt::Display for Counted {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&counted(self.0, self.1))
     }
 }
 

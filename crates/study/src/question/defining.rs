@@ -1,7 +1,7 @@
 //! What is wrong with a definition: what several kinds of questions check.
 
 use super::Choice;
-use crate::check::{Issues, Problem, below};
+use crate::check::{Counted, Issues, Problem, below};
 use crate::study_file::LocalText;
 
 /// Options: enough of them, each with a value of its own that can stand in a cell.
@@ -30,7 +30,10 @@ pub(crate) fn options(
 /// Points of a scale.
 pub(super) fn points(points: u32, place: &str, issues: &mut Issues) {
     if !(2..=101).contains(&points) {
-        issues.error(below(place, "numItems"), Problem::Points { points });
+        issues.error(
+            below(place, "numItems"),
+            Problem::Points { points: Counted(points as usize, "point") },
+        );
     }
 }
 

@@ -12,7 +12,7 @@ use super::kind::{KindOfQuestion, Summary, Told, between, pick};
 use super::simulation::{Scale, Simulated};
 use super::view::{QuestionKindView, Showing};
 use crate::answer::AnswerProblem;
-use crate::check::{Issues, Problem, below};
+use crate::check::{Counted, Issues, Problem, below};
 use crate::columns::ColumnKind;
 use crate::study_file::LocalText;
 use crate::text::Words;
@@ -60,6 +60,7 @@ impl KindOfQuestion for Likert {
         if labels == 0 {
             defining::ends(&self.left_label, &self.right_label, place, issues);
         } else if labels != self.num_items as usize {
+            let labels = Counted(labels, "label");
             let problem = Problem::LabelCount { labels, points: self.num_items };
             issues.error(below(place, "labels"), problem);
         }

@@ -30,6 +30,7 @@ mod stimuli;
 mod tables;
 mod trial_blocks;
 mod triggers;
+mod typographic_quotes;
 
 use std::collections::BTreeMap;
 
@@ -83,6 +84,7 @@ pub use stimuli::{
 };
 pub use tables::{Layout, TableLayout};
 pub use triggers::Triggers;
+use typographic_quotes::TypographicQuote;
 
 /// A whole study file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -183,12 +185,14 @@ pub enum StudyFileError {
 
 /// The text is not JSON, nor JSON with comments.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{place}: {what}; {}", Self::REMEDY)]
+#[error("{place}: {what}; {remedy}")]
 pub struct SyntaxError {
     /// Line and column, or `study file`.
     pub place: String,
-    /// What the parser says.
+    /// What the parser says, or what is found in the place of JSON.
     pub what: String,
+    /// What to do about it.
+    pub remedy: &'static str,
 }
 
 impl SyntaxError {
@@ -216,15 +220,29 @@ pub fn parse(text: &str) -> Result<serde_json::Value, SyntaxError> {
         return Err(SyntaxError {
             place: format!("line {line}"),
             what: format!("brackets nested more than {DEEPEST} deep"),
+            remedy: SyntaxError::REMEDY,
         });
     }
-    json5::from_str(text).map_err(|error| SyntaxError {
+    json5::from_str(text).map_err(|error| match typographic_quotes::find(text) {
+        Some(TypographicQuote { line, column, quote }) => SyntaxError {
+            place: format!("line {line}, column {column}"),
+            what: format!("{quote} is a typographic quote, as word processors write them"),
+            remedy: "write \" in its place, and the others alike",
+        },
+        None => not_json(&error),
+    })
+}
+
+/// What the parser says.
+fn not_json(error: &json5::Error) -> SyntaxError {
+    SyntaxError {
         place: error.position().map_or_else(
             || "study file".to_owned(),
             |position| format!("line {}, column {}", position.line + 1, position.column + 1),
         ),
         what: error.code().map_or_else(|| error.to_string(), |code| code.to_string()),
-    })
+        remedy: SyntaxError::REMEDY,
+    }
 }
 
 /// Deepest nesting of brackets; the parser calls itself for each.

@@ -1,6 +1,7 @@
 //! The words of the pages that no study file writes: buttons, messages. English and French are complete
 //! here; a study file brings others (`translations`).
 
+mod counted;
 mod sentences;
 mod sound;
 mod table;
@@ -11,6 +12,7 @@ use std::collections::BTreeMap;
 
 use std::borrow::Cow;
 
+pub use counted::{counted, counted_as, counted_in_french};
 pub use sound::sound_words;
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
 pub use translation::{Fault, faults, names, template};

@@ -1,0 +1,86 @@
+// The pictures of docs/guide/first-study.md: the page's own command makes its study, of the public head and take, which
+// is served and looked at. MIMIQUE_UPDATE_GOLDEN=1 writes the pictures anew; look at them before you keep them.
+
+import assert from "node:assert/strict";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
+import { test } from "node:test";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { parse } from "./lib/csv.mjs";
+import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { mimique, root, serve } from "./lib/server.mjs";
+
+const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
+const files = ["ict-facekit/ict-facekit.glb", "animface/JawMoCap.c3d", "animface/markers-ict-facekit.json"];
+const absent = files.map((file) => join(data, file)).find((file) => !existsSync(file));
+const unable = skip(!executable ? "Chromium not found" : absent && `real data not found: ${absent}`);
+const pictures = join(root, "docs/guide/pictures");
+const MOST_BYTES = 150_000;
+
+/** The study of the page, made by the page's command: its file. */
+function pageStudy() {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-guide-"));
+  mkdirSync(join(folder, "public"));
+  for (const file of files) copyFileSync(join(data, file), join(folder, "public", basename(file)));
+  const page = readFileSync(join(root, "docs/guide/first-study.md"), "utf8");
+  const command = /^\$ mimique (new jaw .*)$/m.exec(page)[1];
+  mimique(command.split(" "), { cwd: folder });
+  return join(folder, "jaw/study.json");
+}
+
+/** Takes a picture, and sees that the page's is of the same size and small. */
+async function taken(page, name) {
+  const update = process.env.MIMIQUE_UPDATE_GOLDEN === "1";
+  const there = join(update ? pictures : screenshotFolder("guide"), name);
+  if (update) mkdirSync(pictures, { recursive: true });
+  await page.screenshot({ path: there, type: "jpeg", quality: 80 });
+  const kept = join(pictures, name);
+  assert.ok(statSync(kept).size < MOST_BYTES, `${name} has ${statSync(kept).size} bytes`);
+  assert.deepEqual(size(readFileSync(kept)), size(readFileSync(there)), name);
+}
+
+/** Height and width of a JPEG: those of its frame header. */
+function size(bytes) {
+  for (let at = 2; at < bytes.length; at += 2 + bytes.readUInt16BE(at + 2)) {
+    if ([0xc0, 0xc1, 0xc2].includes(bytes[at + 1])) return [bytes.readUInt16BE(at + 5), bytes.readUInt16BE(at + 7)];
+  }
+  throw new Error("no JPEG");
+}
+
+test("guide: the pictures of the first study", { skip: unable, timeout: 600_000 }, async () => {
+  const server = await serve([pageStudy()]);
+  const browser = await open("webgl2", { viewport: { width: 960, height: 960 } });
+  const { page } = browser;
+  try {
+    await page.goto(`${server.url}/preview/jaw?backend=webgl2`);
+    await page.waitForFunction(() => document.querySelector("canvas")?.width > 0, null, { timeout: 120_000 });
+    await page.waitForTimeout(4000);
+    await taken(page, "first-study-preview.jpg");
+    await page.goto(`${server.url}/s/jaw/?backend=webgl2`);
+    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
+    let here = await place(page);
+    while (here.view !== "trial") {
+      if (here.view === "questions") await answer(page, "mouse", here.step);
+      await go(page, "mouse");
+      here = await leave(page, here, 60_000);
+    }
+    await phase(page, "ready", 120_000);
+    await go(page, "mouse");
+    await phase(page, "answering", 120_000);
+    await page.waitForTimeout(500);
+    await taken(page, "first-study-trial.jpg");
+    here = await place(page);
+    await answer(page, "mouse", here.step);
+    await go(page, "mouse");
+    await leave(page, here, 60_000);
+    assert.deepEqual(browser.errors, [], "the console is clean");
+    const out = join(server.folder, "answers.csv");
+    mimique(["export", "--database", server.database, "--format", "csv", "--out", out]);
+    const rows = parse(readFileSync(out, "utf8")).filter((row) => row.stimulus);
+    assert.equal(new Set(rows.map((row) => row.stimulus)).size, 1, "one trial is exported");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
