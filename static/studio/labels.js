@@ -2,6 +2,8 @@
 import { made } from "../stage/player.js";
 import { draw, style } from "../drawing/lines.js";
 import { movable } from "./drag.js";
+import { isShown, whenShown } from "./tabs.js";
+import { say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -18,15 +20,13 @@ export class Labels {
   #chosen = -1;
   #rate = 1;
   #frames = 1;
-  #part = 0;
-  #playhead = made("div", { className: "playhead" });
 
   /// `page`: {slot(), seek(ms), name(), save(name, text), expressions(segments), busy(words, work), report(error)}
   constructor(page) {
     this.#page = page;
     const on = (id, act) => $(id).addEventListener("click", () => act().catch(page.report));
-    on("labels-suggest", () => this.#asked("Looking for labels", "suggestLabels"));
-    on("labels-learn", () => this.#asked("Learning from what is confirmed", "learnLabels"));
+    on("labels-suggest", () => this.#asked(say("labels.looking"), "suggestLabels"));
+    on("labels-learn", () => this.#asked(say("labels.learning"), "learnLabels"));
     on("labels-take", async () => this.#put(await callWorker("labelsFromExpressions", $("labels-rest").checked)));
     on("labels-put", async () => page.expressions((await callWorker("labelsToExpressions", $("labels-only").checked)).segments));
     on("labels-csv", async () => page.save(`${page.name()}-labels.csv`, await callWorker("labelsCsv")));
@@ -39,7 +39,7 @@ export class Labels {
     $("labels-unsure").addEventListener("change", () => this.#draw());
     this.#file("label-model", async (file) => this.#put(await callWorker("labelModel", file.name, await file.text())));
     this.#file("labels-into-eaf", async (file) => this.#saveEaf(await file.text(), file.name));
-    $("expressions").addEventListener("toggle", () => this.#draw());
+    whenShown("labelling", () => this.#draw());
     addEventListener("resize", () => this.#draw());
   }
 
@@ -47,11 +47,6 @@ export class Labels {
   async reset(frames, rate) {
     [this.#frames, this.#rate] = [Math.max(frames, 1), rate];
     await this.#put(await callWorker("labelsState"));
-  }
-
-  at(timeMs) {
-    this.#part = (timeMs * this.#rate) / 1000 / this.#frames;
-    this.#playhead.style.insetInlineStart = `${100 * this.#part}%`;
   }
 
   #file(id, act) {
@@ -104,9 +99,9 @@ export class Labels {
   #tell() {
     const { names, boxes, counts, model, learntFromSuggestions } = this.#state;
     const words = [];
-    if (model) words.push(`Model: ${model.labels.join(", ")}; learnt from ${model.takes.join(", ")}${model.holdsFrames ? "; it holds people's frames as they were" : ""}.`);
-    if (learntFromSuggestions.length > 0) words.push(`Nothing is confirmed of ${learntFromSuggestions.join(", ")}: learnt from suggestions.`);
-    if (boxes.length > 0) words.push(`${counts.confirmed} of ${boxes.length} confirmed, ${counts.relabelled} relabelled, ${counts.moved} moved.`);
+    if (model) words.push(say("labels.model-is", { labels: model.labels.join(", "), takes: model.takes.join(", "), frames: model.holdsFrames ? say("labels.holds-frames") : "" }));
+    if (learntFromSuggestions.length > 0) words.push(say("labels.from-suggestions", { labels: learntFromSuggestions.join(", ") }));
+    if (boxes.length > 0) words.push(say("labels.counts", { ...counts, all: boxes.length }));
     $("labels-note").textContent = words.join(" ");
     $("labels-keys").replaceChildren(...names.map((name, i) => {
       const item = made("span", {}, i < 9 ? `${i + 1} ${name}` : name);
@@ -120,13 +115,13 @@ export class Labels {
   }
 
   #draw() {
-    if (!$("expressions").open) return;
+    if (!isShown("labelling")) return;
     const line = $("label-line");
     line.hidden = this.#state.boxes.length === 0;
-    line.replaceChildren(...this.#state.boxes.map((box, i) => this.#box(box, i)), this.#playhead);
+    line.replaceChildren(...this.#state.boxes.map((box, i) => this.#box(box, i)));
     const plot = $("label-plot");
     plot.hidden = this.#curves.length === 0;
-    if (!plot.hidden) draw(plot, { lines: this.#curves, unit: "", low: 0, high: 1 }, this.#part);
+    if (!plot.hidden) draw(plot, { lines: this.#curves, unit: "", low: 0, high: 1 }, null);
     this.#choice();
   }
 
@@ -143,8 +138,8 @@ export class Labels {
 
   #words({ label, probability, second, confirmed, frames }) {
     const [from, to] = frames.map((frame) => (frame / this.#rate).toFixed(2));
-    const next = second && !confirmed ? `, then ${second.label} ${share(second.probability)}` : "";
-    return `${label}, ${from} to ${to} s: ${confirmed ? "confirmed" : `suggested, ${share(probability)}${next}`}`;
+    const next = second ? say("labels.then", { label: second.label, share: share(second.probability) }) : "";
+    return confirmed ? say("labels.box-confirmed", { label, from, to }) : say("labels.box-suggested", { label, from, to, share: share(probability), next });
   }
 
   #box(own, index) {

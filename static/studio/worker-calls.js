@@ -4,7 +4,7 @@ import { sendPanic } from "../panics.js";
 
 const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
-  "mapState", "solve", "difference", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
+  "mapState", "solve", "difference", "differenceOver", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
   "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
   "restGaze", "holdGaze", "gazeAtMarker", "gazeFile",
   "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState",

@@ -227,6 +227,13 @@ impl Studio {
         Ok(serde_json::to_string(&found)?)
     }
 
+    /// [`Workspace::difference_over`] as JSON.
+    #[wasm_bindgen(js_name = differenceOver)]
+    pub fn difference_over(&self, a: &str, b: &str) -> Result<String, JsError> {
+        let found = self.workspace.difference_over(a, b).map_err(error)?;
+        Ok(serde_json::to_string(&found)?)
+    }
+
     /// [`Workspace::heat_map`], RGBA.
     #[wasm_bindgen(js_name = heatMap)]
     #[allow(clippy::too_many_arguments, reason = "JavaScript has no tuples")]
@@ -261,8 +268,13 @@ impl Studio {
 
     /// [`Workspace::suggest_expressions`].
     #[wasm_bindgen(js_name = suggestExpressions)]
-    pub fn suggest_expressions(&mut self, slot: &str, labels: &str) -> Result<String, JsError> {
-        self.workspace.suggest_expressions(slot, labels).map(text).map_err(error)
+    pub fn suggest_expressions(
+        &mut self,
+        slot: &str,
+        labels: &str,
+        sensitivity: f64,
+    ) -> Result<String, JsError> {
+        self.workspace.suggest_expressions(slot, labels, sensitivity).map(text).map_err(error)
     }
 
     /// [`Workspace::set_expressions`].
