@@ -23,6 +23,7 @@ export function commandsOf(page) {
     named("palette", ["Ctrl+K", "?"], { run: () => page.openPalette() }),
     named("undo", ["Ctrl+Z"], { can: () => history.next.undo !== null, run: () => history.undo() }),
     named("redo", ["Ctrl+Shift+Z", "Ctrl+Y"], { can: () => history.next.redo !== null, run: () => history.redo() }),
+    named("dismiss", ["Escape"], { can: () => !$("problem").hidden, run: () => ($("problem").hidden = true) }),
     named("play", ["Space"], { can: there, run: () => player.toggle() }),
     named("back", [","], { can: there, run: step(-1) }),
     named("on", ["."], { can: there, run: step(1) }),

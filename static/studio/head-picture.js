@@ -17,7 +17,7 @@ export class HeadPicture {
   #key = null;
 
   /// `parts`: {clip, section, canvas, overlay, view (a select of "yaw,pitch"), zoom (1 where it is left out),
-  /// draw(overlay, camera)};
+  /// draw(overlay, camera), turned(view) where somebody follows};
   /// `page`: {avatarKey(), avatarShapes(), report(error)}
   constructor(parts, page) {
     [this.#parts, this.#page] = [parts, page];
@@ -56,6 +56,7 @@ export class HeadPicture {
 
   #turn(view) {
     this.#view = view;
+    this.#parts.turned?.(view);
     this.#stage?.setView({ ...view, zoom: this.#parts.zoom ?? 1 });
     if (!this.#isShown() || this.#key === null) return;
     this.#stage?.show(this.#parts.clip, 0).then(() => this.redraw(), this.#page.report);

@@ -21,13 +21,13 @@ export class Labels {
   #rate = 1;
   #frames = 1;
 
-  /// `page`: {slot(), seek(ms), name(), save(name, text), expressions(segments), busy(words, work), report(error)}
+  /// `page`: {history, slot(), seek(ms), name(), save(name, text), expressions(segments), busy(words, work), report(error)}
   constructor(page) {
     this.#page = page;
     const on = (id, act) => $(id).addEventListener("click", () => act().catch(page.report));
     on("labels-suggest", () => this.#asked(say("labels.looking"), "suggestLabels"));
     on("labels-learn", () => this.#asked(say("labels.learning"), "learnLabels"));
-    on("labels-take", async () => this.#put(await callWorker("labelsFromExpressions", $("labels-rest").checked)));
+    on("labels-take", async () => this.#anew(await callWorker("labelsFromExpressions", $("labels-rest").checked)));
     on("labels-put", async () => page.expressions((await callWorker("labelsToExpressions", $("labels-only").checked)).segments));
     on("labels-csv", async () => page.save(`${page.name()}-labels.csv`, await callWorker("labelsCsv")));
     on("labels-eaf", () => this.#saveEaf(undefined, `${page.name()}-labels.eaf`));
@@ -37,7 +37,7 @@ export class Labels {
     on("label-name", () => this.#change(this.#chosen, "relabel", $("label-new").value));
     $("label-choice").addEventListener("change", () => this.#change(this.#chosen, "relabel", $("label-choice").value).catch(page.report));
     $("labels-unsure").addEventListener("change", () => this.#draw());
-    this.#file("label-model", async (file) => this.#put(await callWorker("labelModel", file.name, await file.text())));
+    this.#file("label-model", async (file) => this.#anew(await callWorker("labelModel", file.name, await file.text())));
     this.#file("labels-into-eaf", async (file) => this.#saveEaf(await file.text(), file.name));
     whenShown("labelling", () => this.#draw());
     addEventListener("resize", () => this.#draw());
@@ -46,7 +46,7 @@ export class Labels {
   /// A new take: the model stays, nothing is labelled.
   async reset(frames, rate) {
     [this.#frames, this.#rate] = [Math.max(frames, 1), rate];
-    await this.#put(await callWorker("labelsState"));
+    await this.#anew(await callWorker("labelsState"));
   }
 
   #file(id, act) {
@@ -59,7 +59,13 @@ export class Labels {
 
   async #asked(words, call) {
     const state = await this.#page.busy(words, () => callWorker(call, this.#page.slot()));
-    if (state) await this.#put(state);
+    if (state) await this.#anew(state);
+  }
+
+  // Other boxes than before: steps that were about those lead nowhere.
+  async #anew(state) {
+    this.#page.history.forget("labels");
+    await this.#put(state);
   }
 
   async #saveEaf(document, name) {
@@ -69,14 +75,25 @@ export class Labels {
   // Something done to a box; the focus stays on it.
   async #change(index, call, ...args) {
     if (index < 0) return;
-    const state = await callWorker(call, index, ...args);
+    const state = await this.#step(call, index, ...args);
     await this.#put(state, state.at ?? index);
+  }
+
+  // What is done to a box can be taken back, until labels are suggested or learnt anew.
+  async #step(call, index, ...args) {
+    const what = say("labels.box", { label: this.#state.boxes[index].label });
+    const before = await callWorker("keepLabels");
+    const state = await callWorker(call, index, ...args);
+    const after = await callWorker("keepLabels");
+    const put = async (kept) => this.#put(await callWorker("restoreLabels", kept));
+    this.#page.history.put({ what, about: "labels", undo: () => put(before), redo: () => put(after) });
+    return state;
   }
 
   // Then the next box in order of time that is not confirmed.
   async #confirm(index) {
     if (index < 0) return;
-    const state = await callWorker("confirmLabel", index);
+    const state = await this.#step("confirmLabel", index);
     const next = state.boxes.findIndex((box, i) => i > index && !box.confirmed && this.#isShown(box));
     await this.#put(state, next < 0 ? index : next);
   }

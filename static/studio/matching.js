@@ -1,5 +1,6 @@
 // Which marker sits where: the list, the neutral head; markers are chosen, dragged along the skin, or moved by keys.
 import { made } from "../stage/player.js";
+import { CapturePoints } from "./capture-points.js";
 import { HeadPicture, WAYS } from "./head-picture.js";
 import { drawMap, sureColour } from "./overlay.js";
 import { say } from "./texts.js";
@@ -9,10 +10,28 @@ const $ = (id) => document.getElementById(id);
 /// How near to a marker's place it is taken hold of, and how far the pointer moves before that is a drag, CSS pixels.
 const REACH = 10;
 const DRAG = 4;
+/// Pixels that are dragged for one step of the head.
+const PIXELS = 15;
+
+/// What a marker of one side is called on the other; itself where its name tells no side.
+const SIDES = [["left", "right"], ["gauche", "droite"], ["gauche", "droit"]];
+function mirrored(label) {
+  for (const pair of SIDES) {
+    for (const [own, other] of [pair, pair.toReversed()]) {
+      const at = label.toLowerCase().indexOf(own);
+      if (at < 0) continue;
+      const capital = label[at] === label[at].toUpperCase();
+      return label.slice(0, at) + (capital ? other[0].toUpperCase() + other.slice(1) : other) + label.slice(at + own.length);
+    }
+  }
+  // Leyebrow, brow_L, mouth_Lend
+  return label.replace(/(^|_)([LR])(?=[a-z]|_|$)/, (_, before, side) => before + (side === "L" ? "R" : "L"));
+}
 
 export class Matching {
   #page;
   #picture;
+  #points;
   #state = { markers: [] };
   #chosen = null;
   /// How sure a suggestion is of each marker that nobody has placed since, 0 to 1.
@@ -25,7 +44,12 @@ export class Matching {
     this.#page = page;
     const overlay = $("match-overlay");
     const draw = (canvas, camera) => drawMap(canvas, camera, this.#state.markers, this.#chosen, this.#confidences);
-    this.#picture = new HeadPicture({ clip: "studio-neutral", section: "matching", canvas: $("match-canvas"), overlay, view: $("match-view"), draw }, page);
+    this.#points = new CapturePoints($("match-points"), {
+      choose: (label) => this.#choose(label),
+      turned: ([right, down]) => this.#picture.turnBy([-right / PIXELS, -down / PIXELS]),
+    });
+    const turned = (view) => this.#points.turn(view);
+    this.#picture = new HeadPicture({ clip: "studio-neutral", section: "matching", canvas: $("match-canvas"), overlay, view: $("match-view"), draw, turned }, page);
     overlay.tabIndex = 0;
     overlay.setAttribute("aria-label", say("matching.keys"));
     overlay.setAttribute("role", "application");
@@ -52,7 +76,9 @@ export class Matching {
     $("neutral-first").value = first;
     $("neutral-end").value = end;
     $("markers").replaceChildren(...state.markers.map((marker) => this.#row(marker)));
+    this.#points.choose(this.#chosen);
     this.#picture.redraw();
+    callWorker("capturePoints").then((points) => this.#points.put(this.#state.markers, points), this.#page.report);
   }
 
   #row({ label, vertex, head }) {
@@ -75,17 +101,26 @@ export class Matching {
   #choose(label) {
     this.#chosen = label;
     for (const row of $("markers").children) row.setAttribute("aria-selected", String(row.dataset.label === label));
+    $("markers").querySelector('[aria-selected="true"]')?.scrollIntoView({ block: "nearest" });
+    this.#points.choose(label);
     this.#picture.redraw();
   }
 
   // Puts a marker on a vertex, or takes it off (null); a step that can be taken back.
   async #set(label, vertex, head, before = this.#of(label)) {
-    if (!(await this.#place(label, vertex, head))) return;
-    const back = { vertex: before.vertex, head: before.head };
-    this.#page.history.put({
-      what: say("matching.moved", { name: label }), about: "map",
-      undo: () => this.#place(label, back.vertex, back.head), redo: () => this.#place(label, vertex, head),
-    });
+    const moves = [{ label, before: { vertex: before.vertex, head: before.head }, after: { vertex, head } }];
+    const other = mirrored(label);
+    const partner = vertex !== null && other !== label && $("match-mirror").checked ? this.#of(other) : undefined;
+    if (partner) {
+      const after = { vertex: await callWorker("mirroredVertex", vertex), head: partner.head };
+      moves.push({ label: partner.label, before: { vertex: partner.vertex, head: partner.head }, after });
+    }
+    const all = async (which) => {
+      for (const move of moves) if (!(await this.#place(move.label, move[which].vertex, move[which].head))) return false;
+      return true;
+    };
+    if (!(await all("after"))) return;
+    this.#page.history.put({ what: say("matching.moved", { name: label }), about: "map", undo: () => all("before"), redo: () => all("after") });
   }
 
   #of(label) {
@@ -148,7 +183,7 @@ export class Matching {
     if (!drag.moved && Math.hypot(now[0] - drag.from[0], now[1] - drag.from[1]) < DRAG) return;
     drag.moved = true;
     if (!drag.label) {
-      this.#picture.turnBy([-(now[0] - drag.last[0]) / 15, -(now[1] - drag.last[1]) / 15]);
+      this.#picture.turnBy([-(now[0] - drag.last[0]) / PIXELS, -(now[1] - drag.last[1]) / PIXELS]);
       drag.last = now;
       return;
     }

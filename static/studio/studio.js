@@ -230,6 +230,7 @@ function wire() {
   wireKeys(commands);
   click("commands", () => palette.open());
   wireSplits();
+  tabs.restore();
 }
 
 async function start() {

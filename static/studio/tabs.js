@@ -21,6 +21,14 @@ export class Tabs {
     }
   }
 
+  /// Shows the panes that were chosen in an earlier visit, as far as they can be now.
+  restore() {
+    for (const [i, list] of this.#lists.entries()) {
+      const tab = $(`tab-${recall(`tab-${i}`)}`);
+      if (tab && list.contains(tab)) this.show(tab.getAttribute("aria-controls"), false);
+    }
+  }
+
   /// Whether a pane can be chosen. A pane that was chosen in an earlier visit is shown as soon as it can be.
   can(id, may) {
     const tab = $(`tab-${id}`);

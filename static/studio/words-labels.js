@@ -27,6 +27,7 @@ export const LABELS = {
   "labels.counts": ["{confirmed} of {all} confirmed, {relabelled} relabelled, {moved} moved.", "{confirmed} sur {all} confirmées, {relabelled} changées, {moved} déplacées."],
   "labels.box-confirmed": ["{label}, {from} to {to} s: confirmed", "{label}, {from} à {to} s : confirmée"],
   "labels.box-suggested": ["{label}, {from} to {to} s: suggested, {share}{next}", "{label}, {from} à {to} s : suggérée, {share}{next}"],
+  "labels.box": ["Label {label}", "Étiquette {label}"],
   "labels.then": [", then {label} {share}", ", puis {label} {share}"],
 
   "body.motion": ["Motion", "Mouvement"],

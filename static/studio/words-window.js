@@ -190,6 +190,7 @@ export const WINDOW = {
   "command.palette": ["Commands and their keys", "Commandes et leurs touches"],
   "command.undo": ["Undo", "Annuler"],
   "command.redo": ["Redo", "Rétablir"],
+  "command.dismiss": ["Close the message", "Fermer le message"],
   "command.play": ["Play or pause", "Lire ou mettre en pause"],
   "command.back": ["One frame back", "Une image en arrière"],
   "command.on": ["One frame on", "Une image en avant"],

@@ -76,6 +76,7 @@ export const WORK = {
   "matching.head": ["The neutral head with its markers", "La tête neutre avec ses marqueurs"],
   "matching.how": ["Drag a marker along the skin, or choose one and click where it sits. Dragging beside markers turns the head. Suggested places are green where they are sure, orange where they are not.", "Glissez un marqueur sur la peau, ou choisissez-en un et cliquez où il est. Glisser à côté des marqueurs tourne la tête. Les places suggérées sont vertes où elles sont sûres, orange où elles ne le sont pas."],
   "matching.moved": ["Place {name}", "Placer {name}"],
+  "matching.points": ["The capture’s own markers, seen from the same side", "Les marqueurs de la capture elle-même, vus du même côté"],
   "matching.keys": ["Click where the chosen marker sits, or Enter puts it in the middle and Shift with an arrow key moves it; arrow keys turn the head", "Cliquez où est le marqueur choisi, ou Entrée le met au milieu et Maj avec une flèche le déplace ; les flèches tournent la tête"],
   "matching.rigid": ["{name} moves with the head", "{name} bouge avec la tête"],
   "matching.off": ["Take {name} off", "Ôter {name}"],

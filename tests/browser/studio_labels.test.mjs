@@ -87,6 +87,11 @@ test("studio: labels are learnt, suggested, confirmed, relabelled, moved and car
     await page.mouse.move(rect.x + rect.width - 30, rect.y + 20, { steps: 4 });
     await page.mouse.up();
     await settled("2 moved");
+    // Taken back and done again.
+    await page.keyboard.press("Control+z");
+    await settled("1 moved");
+    await page.keyboard.press("Control+Shift+z");
+    await settled("2 moved");
 
     // What is confirmed stays as it is when the rest is learnt and suggested anew.
     const confirmed = async () => (await boxes()).filter(({ state }) => state === "confirmed").map(({ label, left, width }) => [label, left, width]);

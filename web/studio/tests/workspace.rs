@@ -130,6 +130,35 @@ fn the_map_goes_out_and_comes_back() {
 }
 
 #[test]
+fn the_capture_stands_beside_the_head_as_the_head_does() {
+    let mut workspace = built_in();
+    let points = workspace.capture_points().unwrap();
+    let state = workspace.map_state().unwrap();
+    let (points, markers) = (points.as_array().unwrap(), state["markers"].as_array().unwrap());
+    assert_eq!(points.len(), markers.len());
+    // The actor's own proportions are left: within two centimetres of where the markers sit on the avatar.
+    for (point, marker) in points.iter().zip(markers).filter(|(_, m)| !m["vertex"].is_null()) {
+        let apart = (0..3).map(|a| (number(&point[a]) - number(&marker["position"][a])).powi(2));
+        assert!(apart.sum::<f64>().sqrt() < 0.02, "{marker} {point}");
+    }
+    // The mirror of a mirrored vertex is the vertex, on the built-in head, whose halves are alike.
+    let left = markers.iter().find(|m| m["label"] == "brow_inner_left").unwrap();
+    let right = markers.iter().find(|m| m["label"] == "brow_inner_right").unwrap();
+    let vertex = |m: &serde_json::Value| m["vertex"].as_u64().unwrap() as usize;
+    let there = workspace.mirrored_vertex(vertex(left)).unwrap();
+    assert_eq!(workspace.mirrored_vertex(there).unwrap(), vertex(left));
+    let mut side = |v: usize| {
+        let found = workspace.place("chin", Some(v), false).unwrap();
+        number(
+            &found["markers"].as_array().unwrap().iter().find(|m| m["label"] == "chin").unwrap()["position"]
+                [0],
+        )
+    };
+    assert!(side(there) * side(vertex(left)) < 0.0 && side(there) * side(vertex(right)) > 0.0);
+    assert!(workspace.mirrored_vertex(usize::MAX).is_err());
+}
+
+#[test]
 fn methods_are_held_against_each_other_part_by_part() {
     let mut workspace = built_in();
     workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
