@@ -131,7 +131,7 @@ const page = {
     shapes.put(faces.chosen);
     curves.update().catch(report);
   },
-  /// Shows the whole of the avatar in the chosen face.
+  /// Shows the whole head, as far as its skin goes, in the chosen face.
   fit() {
     const panel = faces.chosen;
     const portrait = panel?.portrait();

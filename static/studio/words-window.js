@@ -200,7 +200,7 @@ export const WINDOW = {
   "command.speed": ["Next speed", "Vitesse suivante"],
   "command.view": ["Next view", "Vue suivante"],
   "command.view-reset": ["Reset the view", "Réinitialiser la vue"],
-  "command.view-fit": ["Fit the whole avatar", "Ajuster à tout l’avatar"],
+  "command.view-fit": ["Fit the whole head", "Ajuster à toute la tête"],
   "command.view-linked": ["Link the views, or let them go", "Lier les vues, ou les libérer"],
   "command.markers": ["Markers on the faces on or off", "Marqueurs sur les visages oui ou non"],
   "command.face": ["Choose face {number}", "Choisir le visage {number}"],

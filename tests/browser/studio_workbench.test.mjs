@@ -213,13 +213,17 @@ test("studio workbench: the camera by mouse, wheel and keys, linked and each for
     assert.notEqual(await picture(page, "A"), before[0]);
     assert.equal(await picture(page, "B"), before[1], "the other stays");
 
-    // Fit shows the whole avatar: it gets smaller than in the portrait, which cuts the shoulders.
+    // From far too near, fit shows the whole head again, in the middle.
     await page.check("#view-linked");
     await page.click("#view-reset");
+    await page.mouse.move(...middle);
+    for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -200);
+    await settled(page);
+    assert.ok((await view()).zoom > 2, JSON.stringify(await view()));
     await page.click("#view-fit");
     await settled(page);
     const fit = await view();
-    assert.ok(fit.zoom < 1, JSON.stringify(fit));
+    assert.ok(fit.zoom > 0.7 && fit.zoom < 1.3 && Math.abs(fit.x) < 0.02, JSON.stringify(fit));
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
     await browser.close();
