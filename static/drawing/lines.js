@@ -19,20 +19,31 @@ export function fitted(canvas) {
   return { context, width, height };
 }
 
-/// A name with the colour of its line.
+// The dashes of a line as a picture that repeats itself, for its key.
+function dashes(dash) {
+  if (dash.length === 0) return "linear-gradient(var(--swatch) 0 0)";
+  let at = 0;
+  const parts = dash.map((length, i) => `${i % 2 === 0 ? "var(--swatch)" : "transparent"} ${at}px ${(at += length)}px`);
+  return `repeating-linear-gradient(90deg, ${parts.join(", ")})`;
+}
+
+/// A name with the colour and the dashes of its line.
 export function swatch(name, index) {
   const item = document.createElement("span");
   item.textContent = name;
-  item.style.setProperty("--swatch", style(index).colour);
+  const { colour, dash } = style(index);
+  item.style.setProperty("--swatch", colour);
+  item.style.setProperty("--dashes", dashes(dash));
   return item;
 }
 
 /// Left edge of the lines, CSS pixels: before it stand the values.
-const LEFT = 46;
+export const LEFT = 46;
 
 /// Lines over the width of a canvas, the highest of each pixel's values; a playhead at `part` of it, if not null.
-/// `time`: {from, to, unit} of an axis below; `marked`: the parts between which a stretch is marked.
-export function draw(canvas, { lines, log = false, unit, low, high, time, marked }, part) {
+/// `time`: {from, to, unit} of an axis below; `marked`: the parts between which a stretch is marked; `marks`: values
+/// with a dashed line across. A line that is `faint` stands back.
+export function draw(canvas, { lines, log = false, unit, low, high, time, marked, marks = [] }, part) {
   const { context, width, height } = fitted(canvas);
   const css = getComputedStyle(canvas);
   const [ink, soft] = [css.getPropertyValue("--ink"), css.getPropertyValue("--line")];
@@ -65,8 +76,17 @@ export function draw(canvas, { lines, log = false, unit, low, high, time, marked
     context.fillStyle = ink;
     context.fillText(log ? `1e${at.toFixed(0)}` : `${Number(at.toPrecision(2))} ${at === to ? unit : ""}`, 2, Math.max(row, 8));
   }
-  lines.forEach(({ values }, index) => {
+  for (const mark of marks) {
+    context.strokeStyle = css.getPropertyValue("--bad");
+    context.setLineDash([4, 4]);
+    context.beginPath();
+    context.moveTo(left, y(mark));
+    context.lineTo(width, y(mark));
+    context.stroke();
+  }
+  lines.forEach(({ values, faint }, index) => {
     const { colour, dash } = style(index);
+    context.globalAlpha = faint ? 0.15 : 1;
     context.strokeStyle = colour;
     context.setLineDash(dash);
     context.lineWidth = 1.6;
@@ -88,6 +108,7 @@ export function draw(canvas, { lines, log = false, unit, low, high, time, marked
     }
     context.stroke();
   });
+  context.globalAlpha = 1;
   context.setLineDash([]);
   context.lineWidth = 1;
   if (part !== null) {
@@ -107,8 +128,8 @@ export function partAt(canvas, { clientX }) {
   return Math.min(Math.max((clientX - left - LEFT) / Math.max(1, width - LEFT), 0), 1);
 }
 
-// Round times below the lines, as many as there is room for.
-function timeAxis(context, { from, to, unit }, x, height, ink) {
+/// Round times below the lines, as many as there is room for: `x` is the place of a part of the time.
+export function timeAxis(context, { from, to, unit }, x, height, ink) {
   const length = Math.max(to - from, 1e-9);
   const rough = length / Math.max(2, Math.floor((x(1) - x(0)) / 90));
   const ten = 10 ** Math.floor(Math.log10(rough));

@@ -15,6 +15,8 @@ export class Player {
   onDraw = () => {};
   /// Called each second with frames per second and the longest frame, ms.
   onRate = () => {};
+  /// What the button says that plays and pauses.
+  words = { play: "Play", pause: "Pause" };
   #last = null;
   #drawn = 0;
   #since = null;
@@ -60,13 +62,13 @@ export class Player {
     this.playing = true;
     this.#last = null;
     this.#since = null;
-    $("play").textContent = "Pause";
+    $("play").textContent = this.words.pause;
     requestAnimationFrame((now) => this.#tick(now));
   }
 
   pause() {
     this.playing = false;
-    $("play").textContent = "Play";
+    $("play").textContent = this.words.play;
   }
 
   #tick(now) {
@@ -115,16 +117,21 @@ export class Player {
       v: () => cycle($("view")),
       ...more,
     };
-    $("play").addEventListener("click", () => this.toggle());
-    $("back").addEventListener("click", keys[","]);
-    $("forth").addEventListener("click", keys["."]);
+    this.wireControls();
     $("view").addEventListener("change", () => {
       for (const panel of this.panels) panel.turn();
       this.draw();
     });
-    $("scrub").addEventListener("input", () => (this.pause(), this.seek(Number($("scrub").value))));
     addEventListener("keydown", (event) => onKey(event, keys));
     addEventListener("resize", () => this.playing || this.draw());
+  }
+
+  /// Joins the controls alone, for a page with keys and views of its own.
+  wireControls() {
+    $("play").addEventListener("click", () => this.toggle());
+    $("back").addEventListener("click", () => (this.pause(), this.seek(this.timeMs - this.frameMs())));
+    $("forth").addEventListener("click", () => (this.pause(), this.seek(this.timeMs + this.frameMs())));
+    $("scrub").addEventListener("input", () => (this.pause(), this.seek(Number($("scrub").value))));
   }
 }
 

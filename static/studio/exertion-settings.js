@@ -1,27 +1,28 @@
 // The inputs of an exertion: motion, time, person, heart and face; read as the worker takes them.
 import { made } from "../stage/player.js";
 import { describe } from "./lists.js";
+import { say } from "./texts.js";
 
 /// Sliders of a person: the place in the person's JSON, words, range, step, value.
 const SLIDERS = {
-  training: [["level", "Level of training", 0, 10, 0.5, 5]],
+  training: [["level", say("body.level"), 0, 10, 0.5, 5]],
   expressivity: [
-    ["expressivity/mouthOpen", "Mouth open", 0, 2, 0.05, 1],
-    ["expressivity/mouthExhale", "Mouth of an exhalation", 0, 2, 0.05, 1],
-    ["expressivity/mouthStretch", "Mouth stretched", 0, 2, 0.05, 1],
-    ["expressivity/eyes", "Eyes", 0, 2, 0.05, 1],
-    ["expressivity/brows", "Brows", 0, 2, 0.05, 1],
+    ["expressivity/mouthOpen", say("body.mouth-open"), 0, 2, 0.05, 1],
+    ["expressivity/mouthExhale", say("body.mouth-exhale"), 0, 2, 0.05, 1],
+    ["expressivity/mouthStretch", say("body.mouth-stretch"), 0, 2, 0.05, 1],
+    ["expressivity/eyes", say("body.eyes"), 0, 2, 0.05, 1],
+    ["expressivity/brows", say("body.brows"), 0, 2, 0.05, 1],
   ],
   loads: [
-    ["loads/leftHand", "Left hand, kg", 0, 20, 0.5, 0],
-    ["loads/rightHand", "Right hand, kg", 0, 20, 0.5, 0],
-    ["loads/back", "Back, kg", 0, 40, 0.5, 0],
+    ["loads/leftHand", say("body.left-hand"), 0, 20, 0.5, 0],
+    ["loads/rightHand", say("body.right-hand"), 0, 20, 0.5, 0],
+    ["loads/back", say("body.back"), 0, 40, 0.5, 0],
   ],
 };
 const NUMBERS = [
-  ["age", "Age, years", 10, 100, 1, 30],
-  ["heightM", "Height, m", 1, 2.5, 0.01, 1.75],
-  ["massKg", "Mass, kg", 20, 300, 0.5, 70],
+  ["age", say("body.age"), 10, 100, 1, 30],
+  ["heightM", say("body.height"), 1, 2.5, 0.01, 1.75],
+  ["massKg", say("body.mass"), 20, 300, 0.5, 70],
 ];
 /// How long a motion goes on, and how much of it the face shows, s.
 const SECONDS = 300;
@@ -36,14 +37,14 @@ export class ExertionSettings {
   /// Builds the inputs into `place`; `changed` hears that one is another, `open(kind, file)` which file is opened.
   constructor(place, changed, open) {
     this.#changed = changed;
-    const source = this.#select("source", "Motion", [["walk", "built-in walk"], ["run", "built-in run"], ["sprint", "built-in sprint"], ["take", "the capture above"], ["file", "a file"]], "run");
-    const heart = this.#select("heart", "Heart", [["thesis", "thesis: as printed"], ["steady", "steady: settles"], ["recorded", "as recorded"]], "thesis");
-    const model = this.#select("model", "Curves", [["rules", "rules"], ["linear", "linear: as games do"], ["file", "a model file"]], "rules");
+    const source = this.#select("source", say("body.motion"), [["walk", say("body.walk")], ["run", say("body.run")], ["sprint", say("body.sprint")], ["take", say("body.take")], ["file", say("body.file")]], "run");
+    const heart = this.#select("heart", say("body.heart"), [["thesis", say("body.thesis")], ["steady", say("body.steady")], ["recorded", say("body.recorded")]], "thesis");
+    const model = this.#select("model", say("body.curves"), [["rules", say("body.rules")], ["linear", say("body.linear")], ["file", say("body.model-file")]], "rules");
     this.choice("source", "take", false);
     this.choice("source", "file", false);
     this.choice("heart", "recorded", false);
     this.choice("model", "file", false);
-    const sex = this.#select("person/sex", "Sex", [["", "not said"], ["female", "female"], ["male", "male"]], "");
+    const sex = this.#select("person/sex", say("body.sex"), [["", say("body.sex-none")], ["female", say("body.female")], ["male", say("body.male")]], "");
     const number = ([name, words, min, max, step, value]) => this.#number(`person/${name}`, words, { min, max, step, value });
     const sliders = (group) => SLIDERS[group].map((slider) => this.#slider(slider));
     const breath = made("input", { type: "checkbox", checked: true });
@@ -52,13 +53,13 @@ export class ExertionSettings {
     this.#listen("skin", skin, "change");
     place.replaceChildren(
       this.#problem,
-      group("Motion", row(source, opener("Open a motion or a recording…", ".bvh,.c3d,.trc,.tsv,.csv,.txt,.fit,.tcx,.gpx", (file) => open("motion", file))),
-        row(this.#number("seconds", "How long, s", { min: 1, max: 86400, step: "any", value: SECONDS }), this.#number("from", "Face from, s", { min: 0, step: "any", value: SECONDS - WINDOW }), this.#number("to", "to, s", { min: 0, step: "any", value: SECONDS }))),
-      group("Person", ...sliders("training"), row(...NUMBERS.map(number), sex)),
-      group("Loads", ...sliders("loads")),
-      group("Expressivity", ...sliders("expressivity")),
-      group("Heart and face", row(heart, model, opener("Open a model…", ".json", (file) => open("model", file))),
-        row(made("label", { className: "preview-check" }, breath, " Face and chest breathe"), made("label", { className: "preview-check" }, skin, " The skin reddens and sweats"), this.#number("seed", "Seed of irregular breaths", { min: 0, step: 1, value: "", placeholder: "none" }))),
+      group(say("body.motion"), row(source, opener(say("body.open"), ".bvh,.c3d,.trc,.tsv,.csv,.txt,.fit,.tcx,.gpx", (file) => open("motion", file))),
+        row(this.#number("seconds", say("body.seconds"), { min: 1, max: 86400, step: "any", value: SECONDS }), this.#number("from", say("body.from"), { min: 0, step: "any", value: SECONDS - WINDOW }), this.#number("to", say("body.to"), { min: 0, step: "any", value: SECONDS }))),
+      group(say("body.person"), ...sliders("training"), row(...NUMBERS.map(number), sex)),
+      group(say("body.loads"), ...sliders("loads")),
+      group(say("body.expressivity"), ...sliders("expressivity")),
+      group(say("body.heart-and-face"), row(heart, model, opener(say("body.open-model"), ".json", (file) => open("model", file))),
+        row(made("label", { className: "preview-check" }, breath, say("body.breathe")), made("label", { className: "preview-check" }, skin, say("body.skin")), this.#number("seed", say("body.seed"), { min: 0, step: 1, value: "", placeholder: say("body.no-seed") }))),
     );
   }
 
@@ -72,6 +73,21 @@ export class ExertionSettings {
   /// Chooses, as a person would.
   choose(name, value) {
     this.#inputs.get(name).value = value;
+  }
+
+  /// All inputs as they are, to be kept and put back.
+  state() {
+    return [...this.#inputs].map(([name, input]) => [name, input.type === "checkbox" ? input.checked : input.value]);
+  }
+
+  putState(state) {
+    for (const [name, value] of state) {
+      const input = this.#inputs.get(name);
+      if (input.type === "checkbox") input.checked = value;
+      else input.value = value;
+      if (input.type === "range") input.nextElementSibling.textContent = input.value;
+    }
+    this.#seconds = Number(this.value("seconds"));
   }
 
   value(name) {

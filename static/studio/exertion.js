@@ -3,13 +3,14 @@ import { openStage, preparedClip, putClip } from "../stage/host.js";
 import { made } from "../stage/player.js";
 import { ExertionPictures } from "../drawing/exertion.js";
 import { ExertionSettings } from "./exertion-settings.js";
+import { isShown, whenShown } from "./tabs.js";
+import { numeral, say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
 const LOOK = { background: "#808080", width: 480, height: 480 };
 const SLOT = "exertion";
 const CLIP = "studio-exertion";
-const NO_AVATAR = "Open an avatar above, or take the built-in head, to see the face.";
 
 /// One of the player's panels.
 export class Exertion {
@@ -24,21 +25,25 @@ export class Exertion {
   #pack = { key: null, bytes: null };
   #isBusy = false;
   #isStale = false;
+  // The inputs as they were changed last.
+  #known;
   facts = null;
   drawn = 0;
   slot = SLOT;
 
-  /// `page`: {player, avatarKey(), takeIsMotion(), captureOptions(), save(name, text), changed(), report(error)}
+  /// `page`: {player, camera, tabs, history, avatarKey(), takeIsMotion(), captureOptions(), save(name, text), changed(), report(error)}
   constructor(page) {
     this.#page = page;
     this.#settings = new ExertionSettings($("exertion-settings"), (name) => this.#set(name), (kind, file) => this.#open(kind, file).catch(page.report));
+    this.#known = this.#settings.state();
     this.#pictures = new ExertionPictures((window) => {
       this.#settings.window(window);
+      this.#edited("window");
       this.update();
     });
     $("exertion-body").append(this.#pictures.body);
     $("exertion-courses").append(this.#pictures.courses, this.#pictures.clip);
-    $("exertion").addEventListener("toggle", () => this.sourcesChanged());
+    whenShown("exertion", () => this.sourcesChanged());
     const on = (id, act) => $(id).addEventListener("click", () => act().catch(page.report));
     const name = () => `exertion-${this.#settings.value("source")}`;
     on("exertion-weights", async () => page.save(`${name()}-weights.csv`, await callWorker("exertionWeightsCsv")));
@@ -47,16 +52,16 @@ export class Exertion {
     on("exertion-study", async () => page.save(`${name()}-study.json`, await callWorker("exertionStudy")));
     on("exertion-copy", async () => {
       await navigator.clipboard.writeText(await callWorker("exertionStudy"));
-      $("exertion-copied").textContent = "Copied: captures, segments and methods for a study file.";
+      $("exertion-copied").textContent = say("exertion.copied");
     });
   }
 
-  get canvas() {
-    return this.#canvas;
+  get clipId() {
+    return CLIP;
   }
 
   title() {
-    return "Exertion";
+    return say("exertion");
   }
 
   clip() {
@@ -72,12 +77,12 @@ export class Exertion {
   }
 
   turn() {
-    const [yaw, pitch] = $("view").value.split(",").map(Number);
-    this.#stage?.setView({ yaw, pitch });
+    const { yaw, pitch, zoom } = this.#page.camera.of(SLOT);
+    this.#stage?.setView({ yaw, pitch, zoom });
   }
 
   draw(timeMs) {
-    if (!$("exertion").open) return true;
+    if (!isShown("exertion")) return true;
     this.#pictures.at(timeMs);
     if (!this.facts || !this.#stage) return true;
     try {
@@ -90,11 +95,6 @@ export class Exertion {
     }
   }
 
-  /// Draws a frame for certain, for exports.
-  async show(timeMs) {
-    await this.#stage.show(CLIP, timeMs);
-  }
-
   /// Another avatar or capture, or the section was opened.
   sourcesChanged() {
     const can = this.#page.takeIsMotion();
@@ -105,7 +105,7 @@ export class Exertion {
 
   /// Computes and shows; of what is set meanwhile the last counts.
   async update() {
-    if (!$("exertion").open) return;
+    if (!isShown("exertion")) return;
     this.#isStale = true;
     if (this.#isBusy) return;
     this.#isBusy = true;
@@ -125,7 +125,21 @@ export class Exertion {
   #set(name) {
     if (name === "source" && this.#settings.value("source") !== "file") this.#settings.usual();
     if (name === "source") this.#heartOf(false);
+    this.#edited(name);
     this.update();
+  }
+
+  // A person has changed an input: a step that can be taken back.
+  #edited(name) {
+    const [before, after] = [this.#known, this.#settings.state()];
+    this.#known = after;
+    const put = async (state) => {
+      this.#settings.putState(state);
+      this.#known = state;
+      this.#page.tabs.show("exertion");
+      await this.update();
+    };
+    this.#page.history.put({ what: say("exertion"), same: `exertion ${name}`, undo: () => put(before), redo: () => put(after) });
   }
 
   #heartOf(recorded) {
@@ -169,7 +183,7 @@ export class Exertion {
     if (told.face) await this.#face(told.face);
     else {
       this.facts = null;
-      this.#veil.textContent = NO_AVATAR;
+      this.#veil.textContent = say("exertion.no-avatar");
       this.#veil.hidden = false;
     }
     this.#page.changed();
@@ -189,18 +203,17 @@ export class Exertion {
     this.#stage = await this.#opening;
     this.facts = face;
     this.turn();
-    this.#canvas.setAttribute("aria-label", "The face in the window");
-    this.#veil.hidden = true;
+        this.#veil.hidden = true;
   }
 
   #tell({ name, person, end, warnings, notes, face }, took) {
     const [open, stretched, eyes, brows] = end.curves.map((curve) => curve.toFixed(0));
     const rows = [
-      ["Person", `heart ${person.heartRest.toFixed(0)} to ${person.heartMost.toFixed(0)} per minute, VO2max ${person.vo2Max.toFixed(1)} ml/kg/min`],
-      [`After ${end.second} s`, `heart ${end.heartRate.toFixed(0)} per minute (${(100 * end.rcn).toFixed(0)} % of its reserve), ${end.breaths.toFixed(0)} breaths per minute`],
-      ["", `EPOC ${end.epoc.toFixed(1)} ml/kg, exertion ${end.borg.toFixed(1)} of 20`],
-      ["Face", `mouth open ${open} %, stretched ${stretched} %, eyes ${eyes} %, brows ${brows} %`],
-      ["Computed", `${name}, in ${took.toFixed(0)} ms`],
+      [say("body.person"), say("body.facts-person", { rest: person.heartRest.toFixed(0), most: person.heartMost.toFixed(0), vo2: numeral(person.vo2Max, 1) })],
+      [say("body.after", end), say("body.facts-heart", { rate: end.heartRate.toFixed(0), share: (100 * end.rcn).toFixed(0), breaths: end.breaths.toFixed(0) })],
+      ["", say("body.facts-epoc", { epoc: numeral(end.epoc, 1), borg: numeral(end.borg, 1) })],
+      [say("body.face"), say("body.facts-face", { open, stretched, eyes, brows })],
+      [say("body.computed"), say("body.computed-of", { name, ms: took.toFixed(0) })],
     ];
     $("exertion-facts").replaceChildren(...rows.map(([term, words]) => made("div", {}, made("dt", {}, term), made("dd", { className: "number" }, words))));
     const said = (className) => (text) => made("p", { className }, text);

@@ -1,5 +1,6 @@
 // The neutral head of the avatar with something drawn over it: turned, and asked for the vertex at a place.
 import { openStage, putClip } from "../stage/host.js";
+import { isShown, whenShown } from "./tabs.js";
 import { callWorker } from "./worker-calls.js";
 import { project } from "./overlay.js";
 
@@ -16,11 +17,11 @@ export class HeadPicture {
   #key = null;
 
   /// `parts`: {clip, section, canvas, overlay, view (a select of "yaw,pitch"), zoom (1 where it is left out),
-  /// draw(overlay, camera)};
+  /// draw(overlay, camera), turned(view) where somebody follows};
   /// `page`: {avatarKey(), avatarShapes(), report(error)}
   constructor(parts, page) {
     [this.#parts, this.#page] = [parts, page];
-    parts.section.addEventListener("toggle", () => this.show().catch(page.report));
+    whenShown(parts.section, () => this.show().catch(page.report));
     parts.view.addEventListener("change", () => {
       const [yaw, pitch] = parts.view.value.split(",").map(Number);
       this.#turn({ yaw, pitch });
@@ -28,11 +29,15 @@ export class HeadPicture {
     addEventListener("resize", () => this.#turn(this.#view));
   }
 
-  /// The avatar as it is, once the section is open.
+  #isShown() {
+    return isShown(this.#parts.section);
+  }
+
+  /// The avatar as it is, once the section is shown.
   async show() {
-    const { clip, section, canvas } = this.#parts;
+    const { clip, canvas } = this.#parts;
     const key = this.#page.avatarKey();
-    if (!section.open || key === null) return;
+    if (!this.#isShown() || key === null) return;
     if (this.#key !== key) {
       this.#key = key;
       const pack = await callWorker("avatarPack");
@@ -51,8 +56,9 @@ export class HeadPicture {
 
   #turn(view) {
     this.#view = view;
+    this.#parts.turned?.(view);
     this.#stage?.setView({ ...view, zoom: this.#parts.zoom ?? 1 });
-    if (!this.#parts.section.open || this.#key === null) return;
+    if (!this.#isShown() || this.#key === null) return;
     this.#stage?.show(this.#parts.clip, 0).then(() => this.redraw(), this.#page.report);
   }
 
@@ -64,7 +70,7 @@ export class HeadPicture {
 
   /// The picture's camera, or null while there is no picture.
   camera() {
-    return this.#stage && this.#parts.section.open ? this.#stage.camera(this.#parts.clip) : null;
+    return this.#stage && this.#isShown() ? this.#stage.camera(this.#parts.clip) : null;
   }
 
   /// Where a point (metres) is in the picture: [x, y, depth].

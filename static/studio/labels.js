@@ -2,6 +2,8 @@
 import { made } from "../stage/player.js";
 import { draw, style } from "../drawing/lines.js";
 import { movable } from "./drag.js";
+import { isShown, whenShown } from "./tabs.js";
+import { say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -18,16 +20,14 @@ export class Labels {
   #chosen = -1;
   #rate = 1;
   #frames = 1;
-  #part = 0;
-  #playhead = made("div", { className: "playhead" });
 
-  /// `page`: {slot(), seek(ms), name(), save(name, text), expressions(segments), busy(words, work), report(error)}
+  /// `page`: {history, slot(), seek(ms), name(), save(name, text), expressions(segments), busy(words, work), report(error)}
   constructor(page) {
     this.#page = page;
     const on = (id, act) => $(id).addEventListener("click", () => act().catch(page.report));
-    on("labels-suggest", () => this.#asked("Looking for labels", "suggestLabels"));
-    on("labels-learn", () => this.#asked("Learning from what is confirmed", "learnLabels"));
-    on("labels-take", async () => this.#put(await callWorker("labelsFromExpressions", $("labels-rest").checked)));
+    on("labels-suggest", () => this.#asked(say("labels.looking"), "suggestLabels"));
+    on("labels-learn", () => this.#asked(say("labels.learning"), "learnLabels"));
+    on("labels-take", async () => this.#anew(await callWorker("labelsFromExpressions", $("labels-rest").checked)));
     on("labels-put", async () => page.expressions((await callWorker("labelsToExpressions", $("labels-only").checked)).segments));
     on("labels-csv", async () => page.save(`${page.name()}-labels.csv`, await callWorker("labelsCsv")));
     on("labels-eaf", () => this.#saveEaf(undefined, `${page.name()}-labels.eaf`));
@@ -37,21 +37,16 @@ export class Labels {
     on("label-name", () => this.#change(this.#chosen, "relabel", $("label-new").value));
     $("label-choice").addEventListener("change", () => this.#change(this.#chosen, "relabel", $("label-choice").value).catch(page.report));
     $("labels-unsure").addEventListener("change", () => this.#draw());
-    this.#file("label-model", async (file) => this.#put(await callWorker("labelModel", file.name, await file.text())));
+    this.#file("label-model", async (file) => this.#anew(await callWorker("labelModel", file.name, await file.text())));
     this.#file("labels-into-eaf", async (file) => this.#saveEaf(await file.text(), file.name));
-    $("expressions").addEventListener("toggle", () => this.#draw());
+    whenShown("labelling", () => this.#draw());
     addEventListener("resize", () => this.#draw());
   }
 
   /// A new take: the model stays, nothing is labelled.
   async reset(frames, rate) {
     [this.#frames, this.#rate] = [Math.max(frames, 1), rate];
-    await this.#put(await callWorker("labelsState"));
-  }
-
-  at(timeMs) {
-    this.#part = (timeMs * this.#rate) / 1000 / this.#frames;
-    this.#playhead.style.insetInlineStart = `${100 * this.#part}%`;
+    await this.#anew(await callWorker("labelsState"));
   }
 
   #file(id, act) {
@@ -64,7 +59,13 @@ export class Labels {
 
   async #asked(words, call) {
     const state = await this.#page.busy(words, () => callWorker(call, this.#page.slot()));
-    if (state) await this.#put(state);
+    if (state) await this.#anew(state);
+  }
+
+  // Other boxes than before: steps that were about those lead nowhere.
+  async #anew(state) {
+    this.#page.history.forget("labels");
+    await this.#put(state);
   }
 
   async #saveEaf(document, name) {
@@ -74,14 +75,25 @@ export class Labels {
   // Something done to a box; the focus stays on it.
   async #change(index, call, ...args) {
     if (index < 0) return;
-    const state = await callWorker(call, index, ...args);
+    const state = await this.#step(call, index, ...args);
     await this.#put(state, state.at ?? index);
+  }
+
+  // What is done to a box can be taken back, until labels are suggested or learnt anew.
+  async #step(call, index, ...args) {
+    const what = say("labels.box", { label: this.#state.boxes[index].label });
+    const before = await callWorker("keepLabels");
+    const state = await callWorker(call, index, ...args);
+    const after = await callWorker("keepLabels");
+    const put = async (kept) => this.#put(await callWorker("restoreLabels", kept));
+    this.#page.history.put({ what, about: "labels", undo: () => put(before), redo: () => put(after) });
+    return state;
   }
 
   // Then the next box in order of time that is not confirmed.
   async #confirm(index) {
     if (index < 0) return;
-    const state = await callWorker("confirmLabel", index);
+    const state = await this.#step("confirmLabel", index);
     const next = state.boxes.findIndex((box, i) => i > index && !box.confirmed && this.#isShown(box));
     await this.#put(state, next < 0 ? index : next);
   }
@@ -104,9 +116,9 @@ export class Labels {
   #tell() {
     const { names, boxes, counts, model, learntFromSuggestions } = this.#state;
     const words = [];
-    if (model) words.push(`Model: ${model.labels.join(", ")}; learnt from ${model.takes.join(", ")}${model.holdsFrames ? "; it holds people's frames as they were" : ""}.`);
-    if (learntFromSuggestions.length > 0) words.push(`Nothing is confirmed of ${learntFromSuggestions.join(", ")}: learnt from suggestions.`);
-    if (boxes.length > 0) words.push(`${counts.confirmed} of ${boxes.length} confirmed, ${counts.relabelled} relabelled, ${counts.moved} moved.`);
+    if (model) words.push(say("labels.model-is", { labels: model.labels.join(", "), takes: model.takes.join(", "), frames: model.holdsFrames ? say("labels.holds-frames") : "" }));
+    if (learntFromSuggestions.length > 0) words.push(say("labels.from-suggestions", { labels: learntFromSuggestions.join(", ") }));
+    if (boxes.length > 0) words.push(say("labels.counts", { ...counts, all: boxes.length }));
     $("labels-note").textContent = words.join(" ");
     $("labels-keys").replaceChildren(...names.map((name, i) => {
       const item = made("span", {}, i < 9 ? `${i + 1} ${name}` : name);
@@ -120,13 +132,13 @@ export class Labels {
   }
 
   #draw() {
-    if (!$("expressions").open) return;
+    if (!isShown("labelling")) return;
     const line = $("label-line");
     line.hidden = this.#state.boxes.length === 0;
-    line.replaceChildren(...this.#state.boxes.map((box, i) => this.#box(box, i)), this.#playhead);
+    line.replaceChildren(...this.#state.boxes.map((box, i) => this.#box(box, i)));
     const plot = $("label-plot");
     plot.hidden = this.#curves.length === 0;
-    if (!plot.hidden) draw(plot, { lines: this.#curves, unit: "", low: 0, high: 1 }, this.#part);
+    if (!plot.hidden) draw(plot, { lines: this.#curves, unit: "", low: 0, high: 1 }, null);
     this.#choice();
   }
 
@@ -143,8 +155,8 @@ export class Labels {
 
   #words({ label, probability, second, confirmed, frames }) {
     const [from, to] = frames.map((frame) => (frame / this.#rate).toFixed(2));
-    const next = second && !confirmed ? `, then ${second.label} ${share(second.probability)}` : "";
-    return `${label}, ${from} to ${to} s: ${confirmed ? "confirmed" : `suggested, ${share(probability)}${next}`}`;
+    const next = second ? say("labels.then", { label: second.label, share: share(second.probability) }) : "";
+    return confirmed ? say("labels.box-confirmed", { label, from, to }) : say("labels.box-suggested", { label, from, to, share: share(probability), next });
   }
 
   #box(own, index) {

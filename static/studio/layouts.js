@@ -4,6 +4,8 @@ import { made } from "../stage/player.js";
 import { draw, swatch } from "../drawing/lines.js";
 import { HeadPicture, WAYS } from "./head-picture.js";
 import { drawLayout, facesCamera } from "./overlay.js";
+import { isShown, whenShown } from "./tabs.js";
+import { numeral, say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -12,9 +14,9 @@ const REACH = 14;
 /// The plot begins where so many markers are on the face: fewer tell none, and hide what the others do.
 const FIRST = 4;
 /// The lines of the plot.
-const LINES = ["now", "as it was"];
+const LINES = [say("layouts.now"), say("layouts.as-it-was")];
 const EMPTY = { markers: [], head: [], steps: 0 };
-const mm = (value) => `${value.toFixed(Math.abs(value) < 1 ? 3 : 2)} mm`;
+const mm = (value) => `${numeral(value, Math.abs(value) < 1 ? 3 : 2)} mm`;
 
 export class Layouts {
   #page;
@@ -29,12 +31,12 @@ export class Layouts {
     this.#page = page;
     const overlay = $("layout-overlay");
     this.#picture = new HeadPicture({
-      clip: "studio-layout", section: $("layouts"), canvas: $("layout-canvas"), overlay, view: $("layout-view"), zoom: 1.4,
+      clip: "studio-layout", section: "layouts", canvas: $("layout-canvas"), overlay, view: $("layout-view"), zoom: 1.4,
       draw: (canvas, camera) => drawLayout(canvas, camera, this.#state, this.#chosen),
     }, page);
     overlay.tabIndex = 0;
     overlay.setAttribute("role", "application");
-    overlay.setAttribute("aria-label", "The markers on the head: Page Up and Page Down choose one, arrow keys move it, Delete drops it, Shift with an arrow key turns the head");
+    overlay.setAttribute("aria-label", say("layouts.keys"));
     overlay.addEventListener("pointerdown", (event) => this.#take(event));
     // A finger on a marker drags it, beside markers it scrolls the page.
     overlay.addEventListener("touchstart", (event) => this.#markerAt(this.#picture.at(event.touches[0])) >= 0 && event.preventDefault(), { passive: false });
@@ -44,26 +46,26 @@ export class Layouts {
     const on = (id, act) => $(id).addEventListener("click", () => act().catch(page.report));
     overlay.addEventListener("keydown", (event) => this.#keyed(event)?.catch(page.report));
     on("layout-make", () => this.#make());
-    on("layout-from-map", () => this.#opened("Taking the marker map", () => callWorker("layoutFromMap")));
-    on("layout-undo", () => this.#change("undoLayout"));
+    on("layout-from-map", () => this.#opened(say("layouts.taking"), () => callWorker("layoutFromMap")));
     on("layout-rehearse", () => this.#rehearse());
     on("layout-save", async () => page.save("layout.json", await callWorker("layoutJson")));
     $("layout-file").addEventListener("change", async ({ target }) => {
       const [file] = target.files;
       target.value = "";
-      if (file) await this.#opened(`Reading ${file.name}`, async () => callWorker("layoutFile", file.name, await file.text()));
+      if (file) await this.#opened(say("files.reading", { name: file.name }), async () => callWorker("layoutFile", file.name, await file.text()));
     });
-    $("layouts").addEventListener("toggle", () => this.#plot());
-    $("layouts").addEventListener("keydown", (event) => this.#undoKey(event)?.catch(page.report));
+    whenShown("layouts", () => this.#plot());
     addEventListener("resize", () => this.#plot());
   }
 
   /// Another avatar, or other motion to judge by.
   async sourcesChanged() {
-    $("layouts").hidden = this.#page.avatarKey() === null;
+    this.#page.tabs.can("layouts", this.#page.avatarKey() !== null);
     $("layout-from-map").disabled = !this.#page.mapIsThere();
     if (this.#page.avatarKey() === null) return;
-    this.#put(await callWorker("layoutState"));
+    const state = await callWorker("layoutState");
+    if ((state.steps ?? 0) === 0) this.#page.history.forget("layout");
+    this.#put(state);
     await this.#picture.show();
   }
 
@@ -75,7 +77,7 @@ export class Layouts {
   async #make() {
     const [count, heads] = [$("layout-count"), $("layout-heads")].map((input) => Number(input.value));
     const method = $("layout-method").value;
-    const words = method === "rehearse" ? "Rehearsing layouts: ten seconds, or some minutes on a dense head" : "Choosing places";
+    const words = say(method === "rehearse" ? "layouts.rehearsing" : "layouts.choosing");
     await this.#opened(words, () => callWorker("makeLayout", method, count, heads, $("layout-symmetric").checked));
   }
 
@@ -83,17 +85,20 @@ export class Layouts {
     const state = await this.#page.busy(words, work);
     if (!state) return;
     this.#chosen = -1;
+    // The steps of another layout lead nowhere here.
+    this.#page.history.forget("layout");
     this.#put(state);
     await this.#picture.show();
   }
 
   async #rehearse() {
-    const state = await this.#page.busy("Rehearsing without each marker", () => callWorker("rehearseLayout"));
+    const state = await this.#page.busy(say("layouts.rehearsing-each"), () => callWorker("rehearseLayout"));
     if (state) this.#put(state);
   }
 
-  async #change(call, ...args) {
-    this.#put(await callWorker(call, ...args));
+  // A step that the worker can take back; `again` does it anew.
+  #step(what, again) {
+    this.#page.history.put({ what, about: "layout", undo: async () => this.#put(await callWorker("undoLayout")), redo: async () => this.#put(await again()) });
   }
 
   #put(state) {
@@ -102,7 +107,6 @@ export class Layouts {
     const none = this.#state.markers.length === 0;
     $("layout-there").hidden = none;
     $("layout-save").disabled = none;
-    $("layout-undo").disabled = this.#state.steps === 0;
     this.#tell();
     this.#rows();
     this.#picture.redraw();
@@ -111,15 +115,19 @@ export class Layouts {
 
   #tell() {
     const { markers, curveMm, firstCurveMm, motion, near = [], headMarkers, isRehearsed, rehearsedMm, distanceMm } = this.#state;
-    if (markers.length === 0) return void ($("layout-note").textContent = "None yet: make one, or open a marker map.");
+    if (markers.length === 0) return void ($("layout-note").textContent = say("layouts.none"));
     const last = (curve) => curve[curve.length - 1];
-    const words = [`${markers.length} markers on the face, ${headMarkers} for the head; expected error ${mm(last(curveMm))} a vertex`];
-    if (last(curveMm) !== last(firstCurveMm)) words[0] += ` (${mm(last(firstCurveMm))} as it was)`;
-    if (isRehearsed && rehearsedMm !== null) words.push(`rehearsed error ${mm(rehearsedMm)}`);
-    words.push(motion.source === "takes" ? `judged by the motion of ${motion.name}` : "no motion is known, every shape counts by itself: open weights, or a training take's");
-    if (near.length > 0) words.push(`nearer than ${distanceMm} mm: ${near.slice(0, 4).map(({ labels, mm: apart }) => `${labels.join(" and ")} (${apart.toFixed(1)} mm)`).join(", ")}${near.length > 4 ? ` and ${near.length - 4} more pairs` : ""}`);
+    const words = [say("layouts.facts", { markers: markers.length, heads: headMarkers, error: mm(last(curveMm)) })];
+    if (last(curveMm) !== last(firstCurveMm)) words[0] += say("layouts.was", { error: mm(last(firstCurveMm)) });
+    if (isRehearsed && rehearsedMm !== null) words.push(say("layouts.rehearsed-error", { error: mm(rehearsedMm) }));
+    words.push(motion.source === "takes" ? say("layouts.judged", { name: motion.name }) : say("layouts.no-motion"));
+    if (near.length > 0) {
+      const pairs = near.slice(0, 4).map(({ labels: [one, other], mm: apart }) => say("layouts.pair", { one, other, mm: numeral(apart, 1) })).join(", ");
+      const more = near.length > 4 ? say("layouts.more-pairs", { count: near.length - 4 }) : "";
+      words.push(say("layouts.near", { distance: distanceMm, pairs, more }));
+    }
     const outside = markers.filter(({ allowed }) => !allowed).map(({ label }) => label);
-    if (outside.length > 0) words.push(`on lids, inner lips, nostrils, ears, neck, hair, or where nothing moves: ${outside.join(", ")}`);
+    if (outside.length > 0) words.push(say("layouts.outside", { labels: outside.join(", ") }));
     $("layout-note").textContent = words.join("; ");
   }
 
@@ -137,7 +145,7 @@ export class Layouts {
   #row({ label, expectedMm, rehearsedMm }, index) {
     const name = made("button", { type: "button" }, `${index + 1} ${label}`);
     name.addEventListener("click", () => this.#choose(index));
-    const drop = made("button", { type: "button", ariaLabel: `Drop ${label}` }, "Drop");
+    const drop = made("button", { type: "button", ariaLabel: say("layouts.drop-one", { name: label }) }, say("layouts.drop"));
     drop.addEventListener("click", () => this.#drop(index).catch(this.#page.report));
     [name.dataset.act, drop.dataset.act] = ["choose", "drop"];
     const number = (value) => made("td", { className: "number" }, value === null ? "–" : value.toFixed(3));
@@ -151,7 +159,7 @@ export class Layouts {
     this.#chosen = index;
     for (const row of $("layout-rows").rows) row.setAttribute("aria-selected", String(Number(row.dataset.index) === index));
     const own = this.#state.markers[index];
-    $("layout-chosen").textContent = own ? `${index + 1} ${own.label}` : "none";
+    $("layout-chosen").textContent = own ? `${index + 1} ${own.label}` : say("none");
     this.#picture.redraw();
     this.#plot();
   }
@@ -159,7 +167,9 @@ export class Layouts {
   // A dropped marker was the chosen one, or those behind it move up.
   async #drop(index) {
     const wasRehearsed = this.#state.isRehearsed;
+    const { label } = this.#state.markers[index];
     const state = await callWorker("dropLayoutMarker", index);
+    this.#step(say("layouts.drop-one", { name: label }), () => callWorker("dropLayoutMarker", index));
     if (this.#chosen >= index) this.#chosen -= this.#chosen === index ? this.#chosen + 1 : 1;
     this.#put(state);
     if (wasRehearsed) await this.#rehearse();
@@ -168,11 +178,11 @@ export class Layouts {
   // Expected error over the markers: as they are, and as they were made or opened.
   #plot() {
     const { curveMm, firstCurveMm, markers } = this.#state;
-    if (!$("layouts").open || markers.length === 0) return;
+    if (!isShown("layouts") || markers.length === 0) return;
     const plot = $("layout-plot");
     const lines = [curveMm, firstCurveMm].map((values, i) => ({ name: LINES[i], values: values.slice(FIRST) }));
     draw(plot, { lines, unit: "mm", low: 0 }, this.#chosen < 0 ? 1 : Math.max(0, (this.#chosen + 1.5 - FIRST) / (curveMm.length - FIRST)));
-    plot.setAttribute("aria-label", `Expected error: ${mm(curveMm[FIRST])} with the first ${FIRST} markers, ${mm(curveMm[curveMm.length - 1])} with all ${markers.length}; as it was ${mm(firstCurveMm[firstCurveMm.length - 1])}`);
+    plot.setAttribute("aria-label", say("layouts.plot", { first: mm(curveMm[FIRST]), from: FIRST, last: mm(curveMm[curveMm.length - 1]), all: markers.length, before: mm(firstCurveMm[firstCurveMm.length - 1]) }));
   }
 
   // The marker at a place of the picture: the nearest that faces the camera.
@@ -218,8 +228,16 @@ export class Layouts {
   async #move(drag, vertex) {
     if (vertex === undefined || vertex === this.#state.markers[drag.index]?.vertex) return;
     const { steps } = this.#state;
-    const state = await callWorker("moveLayoutMarker", drag.index, vertex, $("layout-partner").checked, !drag.begun);
-    drag.begun ||= state.steps > steps;
+    const partner = $("layout-partner").checked;
+    const { label } = this.#state.markers[drag.index];
+    const state = await callWorker("moveLayoutMarker", drag.index, vertex, partner, !drag.begun);
+    if (!drag.begun && state.steps > steps) {
+      drag.begun = true;
+      drag.again = { vertex };
+      this.#step(say("layouts.moved", { name: label }), () => callWorker("moveLayoutMarker", drag.index, drag.again.vertex, partner, true));
+    }
+    // A drag is one step: done again, the marker goes where the drag ended.
+    if (drag.again) drag.again.vertex = vertex;
     this.#put(state);
   }
 
@@ -253,10 +271,4 @@ export class Layouts {
     if (count > 0) this.#choose(this.#chosen < 0 ? (turn > 0 ? 0 : count - 1) : (this.#chosen + turn + count) % count);
   }
 
-  #undoKey(event) {
-    const isUndo = (event.ctrlKey || event.metaKey) && !event.shiftKey && event.key.toLowerCase() === "z";
-    if (!isUndo || this.#state.steps === 0 || event.target.closest("input")) return null;
-    event.preventDefault();
-    return this.#change("undoLayout");
-  }
 }

@@ -1,6 +1,7 @@
 // What a method takes by name: blendshapes locked or bounded, importance of markers. Tables that are
 // built when they are opened; what was typed stays while the method changes.
 import { made } from "../stage/player.js";
+import { numeral, say } from "./texts.js";
 
 /// A table of rows by name, folded, with a filter and a reset.
 class NamedTable {
@@ -19,9 +20,9 @@ class NamedTable {
   constructor(kind, owner, changed) {
     [this.#kind, this.#owner, this.#changed] = [kind, owner, changed];
     this.#count = made("span", { className: "soft" });
-    this.#filter = made("input", { type: "search", placeholder: "Filter", ariaLabel: `Filter ${kind.title.toLowerCase()}, ${owner}` });
+    this.#filter = made("input", { type: "search", placeholder: say("filter"), ariaLabel: say("table.filter", { title: kind.title.toLowerCase(), owner }) });
     this.#filter.addEventListener("input", () => this.#hide());
-    const reset = made("button", { type: "button", ariaLabel: `Reset ${kind.title.toLowerCase()}, ${owner}` }, "Reset");
+    const reset = made("button", { type: "button", ariaLabel: say("table.reset-of", { title: kind.title.toLowerCase(), owner }) }, say("table.reset"));
     reset.addEventListener("click", () => {
       this.values.clear();
       this.#filter.value = "";
@@ -31,7 +32,7 @@ class NamedTable {
     this.#head = made("thead", {});
     this.#rows = made("tbody", {});
     const table = made("table", {}, this.#head, this.#rows);
-    const region = made("div", { className: "studio-table", tabIndex: 0, role: "region", ariaLabel: `${kind.title}, ${owner}` }, table);
+    const region = made("div", { className: "studio-table", tabIndex: 0, role: "region", ariaLabel: say("table.of", { title: kind.title, owner }) }, table);
     this.element = made(
       "details", { className: "studio-named" },
       made("summary", {}, `${kind.title} `, this.#count),
@@ -62,6 +63,16 @@ class NamedTable {
     this.values = new Map([...values].filter(([name]) => this.#names.includes(name)));
     this.fill();
     return [...values.keys()].filter((name) => !this.#names.includes(name));
+  }
+
+  /// All that was typed, as it can be kept and put back.
+  state() {
+    return [...this.values].map(([name, value]) => [name, { ...value }]);
+  }
+
+  putState(entries = []) {
+    this.values = new Map(entries.filter(([name]) => this.#names.includes(name)));
+    this.fill();
   }
 
   /// Something was typed.
@@ -98,7 +109,7 @@ class NamedTable {
 
   #tally() {
     const changed = [...this.values.keys()].filter((name) => this.isChanged(name)).length;
-    this.#count.textContent = changed > 0 ? `${changed} of ${this.#names.length} changed` : "";
+    this.#count.textContent = changed > 0 ? say("table.changed", { changed, all: this.#names.length }) : "";
   }
 
   /// Shows the problems that are about rows beside them, and opens the table.
@@ -152,7 +163,7 @@ export function describe(input, problem, isWrong) {
 /// of the field, or of its entry.
 export function number(input, field, entry = null) {
   if (input.bad) {
-    const text = "is no number; type digits and a point";
+    const text = say("parameters.no-number");
     throw Object.assign(new Error(`${entry === null ? field : `${field}.${entry}`}: ${text}`), { problems: [{ field, entry, text }] });
   }
   return input.text === "" || input.text === undefined ? undefined : Number(input.text);
@@ -168,8 +179,7 @@ export class ShapeTable extends NamedTable {
   #ends = [0, 1];
 
   constructor(owner, changed) {
-    const hint = "A locked blendshape stays at 0. Bounds stand in place of those of all the others; a field left empty keeps the common one.";
-    super({ title: "Blendshapes", one: "shape", hint }, owner, changed);
+    super({ title: say("table.shapes"), one: "shape", hint: say("table.shapes-hint") }, owner, changed);
   }
 
   /// `own`: those that the avatar locks itself.
@@ -194,7 +204,7 @@ export class ShapeTable extends NamedTable {
   }
 
   columns() {
-    return ["Shape", "Locked", ...(this.#parameters.includes("bounds") ? ["Lower", "Upper"] : [])];
+    return ["table.shape", "table.locked", ...(this.#parameters.includes("bounds") ? ["table.lower", "table.upper"] : [])].map((key) => say(key));
   }
 
   fields() {
@@ -202,18 +212,19 @@ export class ShapeTable extends NamedTable {
   }
 
   notes(name) {
-    const words = this.#own.has(name) ? "locked by the avatar's own settings" : this.#toldWords(this.#told.get(name));
+    const words = this.#own.has(name) ? say("table.avatar-locked") : this.#toldWords(this.#told.get(name));
     return [made("span", { className: "note soft" }, words)];
   }
 
   #toldWords(told) {
     if (!told) return "";
     const { state, standardError, confusedWith } = told;
-    const error = standardError === undefined ? "" : `± ${standardError.toFixed(2)} per mm of noise`;
+    const error = standardError === undefined ? "" : say("table.noise", { error: numeral(standardError, 2) });
     if (state === "solved") return error;
-    if (state === "shared") return `${error}, told together with ${confusedWith?.[0] ?? "others"}`;
-    if (state === "untold") return `${error}, though no marker tells it`;
-    return { held: "at 0: no marker tells it", atRest: "at 0: no gaze is given", driven: "driven by lid markers or the gaze" }[state] ?? "";
+    if (state === "shared") return `${error}, ${say("table.together", { name: confusedWith?.[0] ?? say("table.others") })}`;
+    if (state === "untold") return `${error}, ${say("table.untold")}`;
+    const key = { held: "table.held", atRest: "table.at-rest", driven: "table.driven" }[state];
+    return key ? say(key) : "";
   }
 
   isChanged(name) {
@@ -226,14 +237,14 @@ export class ShapeTable extends NamedTable {
     const known = this.of(name);
     const bound = (end, index) => {
       const input = made("input", {
-        type: "number", step: 0.05, value: known[end]?.text ?? "", placeholder: String(this.#ends[index]), ariaLabel: `${end} bound of ${name}`,
+        type: "number", step: 0.05, value: known[end]?.text ?? "", placeholder: String(this.#ends[index]), ariaLabel: say(`table.${end}-of`, { name }),
         disabled: own || Boolean(known.locked),
       });
       input.addEventListener("input", () => this.set(name, { [end]: typed(input) }));
       return input;
     };
     const bounds = [bound("lower", 0), bound("upper", 1)];
-    const lock = made("input", { type: "checkbox", checked: own || Boolean(known.locked), disabled: own, ariaLabel: `${name} locked at 0` });
+    const lock = made("input", { type: "checkbox", checked: own || Boolean(known.locked), disabled: own, ariaLabel: say("table.locked-of", { name }) });
     lock.addEventListener("change", () => {
       for (const input of bounds) input.disabled = lock.checked;
       this.set(name, { locked: lock.checked });
@@ -270,7 +281,7 @@ export class MarkerTable extends NamedTable {
   #taken = false;
 
   constructor(owner, changed) {
-    super({ title: "Importance of markers", one: "marker", hint: "How much a marker counts: 1 where nothing is written, 0 leaves it out." }, owner, changed);
+    super({ title: say("table.importance"), one: "marker", hint: say("table.importance-hint") }, owner, changed);
   }
 
   choose(parameters) {
@@ -279,7 +290,7 @@ export class MarkerTable extends NamedTable {
   }
 
   columns() {
-    return ["Marker", "Importance"];
+    return [say("marker"), say("table.importance-column")];
   }
 
   fields() {
@@ -292,7 +303,7 @@ export class MarkerTable extends NamedTable {
   }
 
   cells(name) {
-    const input = made("input", { type: "number", min: 0, step: 0.1, value: this.of(name).text ?? "", placeholder: "1", ariaLabel: `Importance of ${name}` });
+    const input = made("input", { type: "number", min: 0, step: 0.1, value: this.of(name).text ?? "", placeholder: "1", ariaLabel: say("table.importance-of", { name }) });
     input.addEventListener("input", () => this.set(name, typed(input)));
     return [[input]];
   }

@@ -27,14 +27,17 @@ export function drawMatch(canvas, camera, points) {
   }
 }
 
-/// The markers of a map on the neutral head; the chosen one stands out.
-export function drawMap(canvas, camera, markers, chosen) {
+/// The colour of how sure a suggested place is, 0 to 1.
+export const sureColour = (sure) => (sure >= 0.7 ? "#57c785" : sure >= 0.4 ? "#ffd34d" : "#ff8f4d");
+
+/// The markers of a map on the neutral head, suggested ones in the colour of how sure they are; the chosen one stands out.
+export function drawMap(canvas, camera, markers, chosen, confidences) {
   const { context, width, height } = fitted(canvas);
   for (const { label, position, head } of markers) {
     if (!position) continue;
     const at = project(camera, position, width, height);
     const own = label === chosen;
-    dot(context, at, own ? 6 : 3.5, own ? "#ff5a5f" : head ? "#6fd3ff" : "#ffd34d");
+    dot(context, at, own ? 6 : 3.5, own ? "#ff5a5f" : head ? "#6fd3ff" : confidences.has(label) ? sureColour(confidences.get(label)) : "#ffd34d");
     ring(context, at, own ? 9 : 4.5, "rgb(0 0 0 / 55%)");
     if (own) {
       context.font = "600 14px system-ui, sans-serif";

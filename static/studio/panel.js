@@ -1,121 +1,168 @@
-// One method on the avatar: choose it, change its parameters, see the face follow.
-import { openStage, preparedClip, putClip } from "../stage/host.js";
+// One method on the avatar: choose it, change its parameters, see the face follow. The face is a viewport, the
+// method with its parameters stands in the inspector.
 import { made } from "../stage/player.js";
-import { callWorker } from "./worker-calls.js";
+import { Difference } from "./difference.js";
 import { drawMatch } from "./overlay.js";
 import { Parameters } from "./parameters.js";
+import { numeral, say } from "./texts.js";
+import { Viewport } from "./viewport.js";
+import { callWorker } from "./worker-calls.js";
 
-const LOOK = { background: "#808080", width: 480, height: 480 };
 // A change waits so long for the next one before it is solved.
 const SETTLE_MS = 180;
+
+// What a change is about: the method, a parameter, a table.
+function changedIn(before, after) {
+  if (before.method !== after.method) return say("method");
+  const at = after.fields.findIndex(([, value], i) => value !== before.fields[i]?.[1]);
+  if (at >= 0) return after.fields[at][0];
+  return JSON.stringify(before.shapes) === JSON.stringify(after.shapes) ? say("table.importance") : say("table.shapes");
+}
 
 export class MethodPanel {
   #slot;
   #page;
-  #element;
-  #canvas;
-  #overlay;
-  #heat;
-  #veil;
-  #facts;
-  #notices;
+  #viewport;
+  #facts = made("dl", { className: "preview-clip" });
+  #notices = made("div", { role: "status" });
   #select;
   #parameters;
+  #difference;
   #saveSettings;
-  #compare;
-  #scale;
-  #stage = null;
-  #opening = null;
   #timer = null;
   #run = 0;
-  #heatBusy = false;
   #matchBusy = false;
   #generation = 0;
+  #lastOwn = false;
+  // What the controls held when they were changed last.
+  #known;
+  #name;
+  /// The method with all that belongs to it, for the inspector.
+  inspector;
   facts = null;
-  drawn = 0;
 
-  /// `page`: {methods, player, avatar(), faceMarkers(), trainingMissing(), showMarkers(), name(), save(name, text),
-  /// changed(panel), remove(panel), report(error)}
+  /// `page`: {methods, player, camera, panels(), seekFrame(slot, frame), avatar(), avatarKey(), faceMarkers(), trainingMissing(), showMarkers(), first(), name(),
+  /// save(name, text), changed(panel), edited(panel), choose(slot), remove(slot), report(error)}
   constructor(slot, page, method, removable) {
-    this.#slot = slot;
-    this.#page = page;
-    const letter = slot.toUpperCase();
-    this.#select = made("select", { ariaLabel: `Method ${letter}` });
+    [this.#slot, this.#page, this.#name] = [slot, page, method];
+    const { letter } = this;
+    this.#viewport = new Viewport(slot, page, removable);
+    this.#select = made("select", { ariaLabel: say("panel.method", { letter }) });
     for (const { name } of page.methods) this.#select.append(new Option(name, name));
     this.#select.value = method;
-    this.#select.addEventListener("change", () => (this.#controls(), this.solveSoon()));
+    this.#select.addEventListener("change", () => (this.#controls(), this.#edited()));
     this.trainingChanged();
-    const head = made("div", { className: "studio-panel-head" }, made("strong", {}, letter), this.#select);
-    if (removable) {
-      const remove = made("button", { type: "button", ariaLabel: `Remove method ${letter}` }, "✕");
-      remove.addEventListener("click", () => page.remove(this));
-      head.append(remove);
-    }
-    this.#parameters = new Parameters(slot, () => this.solveSoon());
-    this.#saveSettings = made("button", { type: "button", disabled: true, ariaLabel: `Save settings of method ${letter}` }, "Save settings");
+    this.#parameters = new Parameters(slot, () => this.#edited());
+    this.#difference = new Difference(slot, page, (name, words) => this.#row(name, words));
+    this.#saveSettings = made("button", { type: "button", disabled: true, ariaLabel: say("settings.save-of", { letter }) }, say("settings.save"));
     this.#saveSettings.addEventListener("click", () => this.#settings().catch(page.report));
-    this.#canvas = made("canvas", { role: "img" });
-    this.#heat = made("canvas", { className: "studio-overlay", hidden: true });
-    this.#overlay = made("canvas", { className: "studio-overlay" });
-    this.#veil = made("div", { className: "veil" }, "Nothing to show yet");
-    const frame = made("div", { className: "stage studio-stage" }, this.#canvas, this.#heat, this.#overlay, this.#veil);
-    this.#facts = made("dl", { className: "preview-clip" });
-    this.#notices = made("div", { role: "status" });
-    const below = made("div", { className: "studio-below" });
-    if (removable) {
-      this.#compare = made("input", { type: "checkbox" });
-      this.#compare.addEventListener("change", () => page.player.draw());
-      this.#scale = made("input", { type: "number", min: 0.1, step: 0.1, value: 1, ariaLabel: "Brightest colour, mm" });
-      this.#scale.addEventListener("change", () => page.player.draw());
-      below.append(
-        made("label", { className: "preview-check" }, this.#compare, " Difference from A"),
-        made("div", { className: "studio-heat-scale" }, "0", made("i", {}), this.#scale, "mm"),
-      );
-    }
-    // The tables stand below the face, so that it is seen while they are filled in.
     const file = made("input", { type: "file", className: "visually-hidden", accept: ".json" });
     file.addEventListener("change", () => this.#openSettings(file));
-    const openSettings = made("label", { className: "button" }, "Open settings… ", made("span", { className: "visually-hidden" }, `of method ${letter}`), file);
-    const save = made("div", { className: "row" }, this.#saveSettings, openSettings);
-    below.append(made("div", { className: "studio-method" }, ...this.#parameters.tables, save), this.#facts, this.#notices);
-    this.#element = made("section", { className: "preview-panel", ariaLabel: `Method ${letter}` });
-    this.#element.append(made("div", { className: "studio-method" }, head, this.#parameters.element), frame, below);
+    const open = made("label", { className: "button" }, `${say("settings.open")} `, made("span", { className: "visually-hidden" }, say("settings.open-of", { letter })), file);
+    this.inspector = made(
+      "section", { className: "studio-inspector", ariaLabel: say("panel.method", { letter }), hidden: true },
+      made("div", { className: "studio-method" },
+        made("div", { className: "studio-panel-head" }, made("span", { className: "studio-letter" }, letter), this.#select),
+        this.#parameters.element, ...this.#parameters.tables,
+        made("div", { className: "row" }, this.#saveSettings, open)),
+      this.#difference.element, this.#facts, this.#notices,
+    );
+    this.inspector.dataset.slot = slot;
+    this.rename(method);
     this.#controls();
     this.sourcesChanged();
+    this.#known = this.state();
+  }
+
+  // A person has changed something: it is solved, and can be taken back.
+  #edited() {
+    const [before, after] = [this.#known, this.state()];
+    this.#known = after;
+    const { history, panel } = this.#page;
+    // The newest panel of the slot: this one may have been taken away and brought back meanwhile.
+    const put = (state) => panel(this.#slot)?.restore(state);
+    const changed = changedIn(before, after);
+    history.put({
+      what: say("panel.changed", { what: changed, letter: this.letter }), same: `${this.#slot} ${changed}`,
+      undo: () => put(before), redo: () => put(after),
+    });
+    this.solveSoon();
+  }
+
+  /// Method and parameters as they stand in the controls, to be kept and put back.
+  state() {
+    return { method: this.#select.value, ...this.#parameters.state() };
+  }
+
+  /// Puts back what `state` has told, unsolved.
+  put(state) {
+    this.choose(state.method);
+    this.#parameters.putState(state);
+    this.#known = this.state();
+  }
+
+  /// Puts it back and solves; resolves when the face stands.
+  async restore(state) {
+    this.put(state);
+    this.#page.choose(this.#slot);
+    await this.solve();
   }
 
   get element() {
-    return this.#element;
+    return this.#viewport.element;
   }
 
   get slot() {
     return this.#slot;
   }
 
-  get canvas() {
-    return this.#canvas;
+  get letter() {
+    return this.#slot.toUpperCase();
   }
 
+  get clipId() {
+    return this.#viewport.clipId;
+  }
+
+  get drawn() {
+    return this.#viewport.drawn;
+  }
+
+  /// The name that tells it from the others.
   title() {
-    return `${this.#slot.toUpperCase()}: ${this.#select.value}`;
+    return this.#name;
+  }
+
+  /// What the name is made of (names.js).
+  named() {
+    const method = this.#select.value;
+    const usual = Object.fromEntries(this.#definition().parameters.map(({ key, default: value }) => [key, value]));
+    return { letter: this.letter, method, settings: this.facts?.settings ?? null, usual };
+  }
+
+  rename(name) {
+    this.#name = name;
+    this.#viewport.entitle(name);
+    this.#difference.rename();
+  }
+
+  /// Whether it is the one whose method the inspector shows.
+  chosen(isChosen) {
+    this.#viewport.chosen(isChosen);
+    this.inspector.hidden = !isChosen;
   }
 
   clip() {
-    return this.facts ? preparedClip(this.#clipId()) : null;
+    return this.facts ? this.#viewport.clip() : null;
   }
 
-  #clipId() {
-    return `studio-${this.#slot}`;
-  }
-
-  // What a method is set up with: "shapes", "training" (a take to learn from), "surface", "weights".
-  #needs(method) {
-    return this.#page.methods.find(({ name }) => name === method).needs;
+  #definition(method = this.#select.value) {
+    return this.#page.methods.find(({ name }) => name === method);
   }
 
   // The parameters that the method has.
   #controls() {
-    this.#parameters.choose(this.#page.methods.find(({ name }) => name === this.#select.value));
+    this.#parameters.choose(this.#definition());
   }
 
   /// Another avatar, take or map: other blendshapes, other markers.
@@ -128,9 +175,10 @@ export class MethodPanel {
   trainingChanged() {
     const missing = this.#page.trainingMissing();
     for (const option of this.#select.options) {
-      if (this.#needs(option.value) !== "training") continue;
+      // What a method is set up with: "shapes", "training" (a take to learn from), "surface", "weights".
+      if (this.#definition(option.value).needs !== "training") continue;
       option.disabled = missing !== null;
-      option.textContent = missing === null ? option.value : `${option.value} (under Files: ${missing})`;
+      option.textContent = missing === null ? option.value : say("method.no-training", { method: option.value, missing });
       if (this.#select.value === option.value) this.solveSoon();
     }
   }
@@ -141,13 +189,17 @@ export class MethodPanel {
     if (!file) return;
     try {
       const { factors, label, training, ...spec } = JSON.parse(await file.text());
-      if (!this.#page.methods.some(({ name }) => name === spec.method)) {
-        throw new Error(`method ${JSON.stringify(spec.method)}: there is none of that name; open a file that a panel saved`);
-      }
+      if (!this.#definition(spec.method)) throw new Error(say("method.unknown", { name: JSON.stringify(spec.method) }));
+      const before = this.state();
       this.choose(spec.method);
       this.#controls();
       const byName = JSON.stringify([spec.locked, spec.bounds, spec.importance]);
-      this.#parameters.take(byName.includes("*") ? await callWorker("namedMethod", JSON.stringify(spec)) : spec);
+      this.#known = before;
+      try {
+        this.#parameters.take(byName.includes("*") ? await callWorker("namedMethod", JSON.stringify(spec)) : spec);
+      } finally {
+        this.#edited();
+      }
     } catch (error) {
       this.#page.report(new Error(`${file.name}: ${error.message}`));
     } finally {
@@ -159,7 +211,7 @@ export class MethodPanel {
   // The method as it was solved last, for a study file and `mimique solve --settings`.
   async #settings() {
     if (this.#timer !== null) await this.solve();
-    if (!this.facts) throw new Error(`method ${this.#slot.toUpperCase()}: nothing is solved; correct its parameters first`);
+    if (!this.facts) throw new Error(say("method.unsolved", { letter: this.letter }));
     const text = `${JSON.stringify(this.facts.settings, null, 2)}\n`;
     this.#page.save(`${this.#page.name()}-${this.#slot}-settings.json`, text);
   }
@@ -172,7 +224,7 @@ export class MethodPanel {
   }
 
   isRecorded() {
-    return this.#needs(this.#select.value) === "weights";
+    return this.#definition().needs === "weights";
   }
 
   solveSoon() {
@@ -185,8 +237,7 @@ export class MethodPanel {
     const run = ++this.#run;
     clearTimeout(this.#timer);
     this.#timer = null;
-    this.#veil.hidden = this.facts !== null;
-    this.#veil.textContent = "Solving";
+    if (this.facts === null) this.#viewport.say(say("solving"));
     try {
       const started = performance.now();
       const facts = await callWorker("solve", this.#slot, JSON.stringify(this.#parameters.spec()));
@@ -196,59 +247,53 @@ export class MethodPanel {
         throw Object.assign(new Error(words), { problems: facts.problems });
       }
       if (run !== this.#run) return;
-      const [weights, pack] = await Promise.all([callWorker("weights", this.#slot), callWorker("slotPack", this.#slot)]);
+      const [weights, avatarPack] = await Promise.all([callWorker("weights", this.#slot), callWorker("slotPack", this.#slot)]);
       if (run !== this.#run) return;
       this.#generation += facts.own_avatar || this.#lastOwn ? 1 : 0;
       this.#lastOwn = facts.own_avatar;
       const avatarHash = `${this.#page.avatarKey()}-${facts.own_avatar ? `${this.#slot}${this.#generation}` : "bank"}`;
-      await putClip({
-        clip: this.#clipId(), avatarHash, avatarPack: pack, weights,
-        frames: facts.frames, shapes: facts.shapes.length, rate_hz: facts.rate_hz,
-      });
+      await this.#viewport.put({ avatarHash, avatarPack, weights, frames: facts.frames, shapes: facts.shapes.length, rate_hz: facts.rate_hz });
       if (run !== this.#run) return;
       this.facts = facts;
       this.#parameters.problems([]);
       this.#parameters.solved(facts);
       this.#saveSettings.disabled = false;
-      this.#opening ??= openStage(this.#canvas, LOOK);
-      this.#stage = await this.#opening;
-      this.#canvas.setAttribute("aria-label", `Animated face, method ${this.#select.value}`);
-      this.turn();
       this.#describe(facts, took);
-      this.#veil.hidden = true;
+      this.#viewport.say(null);
       this.#page.changed(this);
       this.#page.player.draw();
+      for (const panel of this.#page.panels()) panel.compare();
     } catch (error) {
       if (run !== this.#run) return;
       this.facts = null;
       this.#saveSettings.disabled = true;
       this.#parameters.problems(error.problems ?? []);
-      this.#veil.hidden = false;
-      this.#veil.textContent = String(error.message ?? error);
+      this.#viewport.say(String(error.message ?? error));
       this.#facts.replaceChildren();
       this.#notices.replaceChildren();
       this.#page.changed(this);
     }
   }
 
-  #lastOwn = false;
+  /// Somebody's weights are others: the difference, too.
+  compare() {
+    this.#difference.look();
+  }
 
   turn() {
-    const [yaw, pitch] = document.getElementById("view").value.split(",").map(Number);
-    this.#stage?.setView({ yaw, pitch });
+    this.#viewport.turn();
+  }
+
+  /// The turned portrait's matrix, once there is one.
+  portrait() {
+    return this.facts && this.#viewport.isThere() ? this.#viewport.portrait() : null;
   }
 
   draw(timeMs) {
-    if (!this.facts || !this.#stage) return true;
-    try {
-      const drawn = this.#stage.drawNow(this.#clipId(), timeMs);
-      this.drawn += drawn;
-      this.#drawOver(timeMs);
-      return drawn;
-    } catch (error) {
-      this.#stage.reopen().then(() => this.#page.player.draw(), this.#page.report);
-      return true;
-    }
+    if (!this.facts || !this.#viewport.isThere()) return true;
+    const drawn = this.#viewport.draw(timeMs);
+    if (drawn !== null) this.#drawOver(timeMs);
+    return drawn ?? true;
   }
 
   frameAt(timeMs) {
@@ -259,54 +304,35 @@ export class MethodPanel {
   // What lies over the picture comes from the worker: the newest wish, one at a time.
   #drawOver(timeMs) {
     const frame = this.frameAt(timeMs);
-    const markers = this.#page.showMarkers() && this.facts.markers.length > 0;
-    this.#overlay.hidden = !markers;
-    if (markers && !this.#matchBusy) {
+    const { overlay, heat } = this.#viewport;
+    overlay.hidden = !this.#page.showMarkers() || this.facts.markers.length === 0;
+    if (!overlay.hidden && !this.#matchBusy) {
       this.#matchBusy = true;
-      const camera = this.#stage.camera(this.#clipId());
+      const camera = this.#viewport.matrix();
       callWorker("markerFrame", this.#slot, frame)
-        .then((points) => drawMatch(this.#overlay, camera, points), () => {})
+        .then((points) => drawMatch(overlay, camera, points), () => {})
         .finally(() => (this.#matchBusy = false));
     }
-    const first = this.#page.first();
-    const heat = Boolean(this.#compare?.checked && first?.facts);
-    this.#heat.hidden = !heat;
-    if (heat && !this.#heatBusy) {
-      this.#heatBusy = true;
-      this.#paintHeat(first.slot, frame).catch(this.#page.report).finally(() => (this.#heatBusy = false));
-    }
-  }
-
-  async #paintHeat(first, frame) {
-    const size = 480;
-    const camera = this.#stage.camera(this.#clipId());
-    const [rgba, { rms_mm, worst_mm }] = await Promise.all([
-      callWorker("heatMap", this.#slot, first, frame, camera, size, size, Number(this.#scale.value) || 1),
-      callWorker("difference", this.#slot, first, frame),
-    ]);
-    this.#heat.width = this.#heat.height = size;
-    this.#heat.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(rgba), size, size), 0, 0);
-    const words = `${rms_mm.toFixed(2)} mm rms, ${worst_mm.toFixed(2)} mm worst`;
-    this.#heat.setAttribute("aria-label", `Difference from A: ${words}`);
-    this.#row("Difference from A", words);
+    this.#difference.paint(heat, () => this.#viewport.matrix(), frame);
   }
 
   #describe(facts, took) {
     this.#facts.replaceChildren();
     const { summary } = facts;
-    this.#row("Frames", `${facts.frames} at ${Number(facts.rate_hz.toFixed(2))} Hz, in ${took.toFixed(0)} ms`);
+    this.#row(say("facts.frames"), say("facts.frames-of", { frames: facts.frames, rate: Number(facts.rate_hz.toFixed(2)), ms: took.toFixed(0) }));
     if (summary) {
-      this.#row("Residual", `${summary.residual_rms_mm.toFixed(2)} mm rms, ${summary.residual_worst_mm.toFixed(2)} mm worst`);
-      this.#row("Iterations", `${summary.iterations_mean.toFixed(1)} per frame, KKT error ${summary.kkt_worst.toExponential(1)}`);
+      this.#row(say("facts.residual"), say("facts.rms-worst", { rms: numeral(summary.residual_rms_mm, 2), worst: numeral(summary.residual_worst_mm, 2) }));
+      this.#row(say("facts.iterations"), say("facts.iterations-of", { mean: numeral(summary.iterations_mean, 1), kkt: summary.kkt_worst.toExponential(1) }));
     }
     if (facts.head_lowpass_hz !== undefined) {
-      this.#row("Head low-pass", facts.head_lowpass_hz === null ? "none" : `${facts.head_lowpass_hz} Hz`);
+      this.#row(say("facts.lowpass"), facts.head_lowpass_hz === null ? say("facts.no-lowpass") : `${facts.head_lowpass_hz} Hz`);
     }
-    if (facts.gaze && !(facts.gaze_at_rest?.length > 0)) this.#row("Gaze", facts.gaze);
-    if (facts.gaze_at_rest?.length > 0) this.#row("Gaze", `at rest: none is given (${facts.gaze_at_rest.length} shapes at 0)`);
+    const atRest = facts.gaze_at_rest?.length ?? 0;
+    if (atRest > 0) this.#row(say("gaze"), say("facts.gaze-rest", { count: atRest }));
+    else if (facts.gaze) this.#row(say("gaze"), facts.gaze);
     const held = (facts.shapes_told ?? []).filter(({ state }) => state === "held").map(({ shape }) => shape);
-    if (held.length > 0) this.#row("Held at 0", held.join(", "));
-    this.#row("Weights", facts.weights_hash.slice(0, 16));
+    if (held.length > 0) this.#row(say("facts.held"), held.join(", "));
+    this.#row(say("facts.weights"), facts.weights_hash.slice(0, 16));
     this.#notices.replaceChildren(...facts.warnings.map((text) => made("p", { className: "notice warn" }, text)));
   }
 
@@ -317,16 +343,11 @@ export class MethodPanel {
     else this.#facts.append(row);
   }
 
-  /// Draws a frame for certain, for exports.
-  async show(timeMs) {
-    await this.#stage.show(this.#clipId(), timeMs);
-  }
-
   close() {
     clearTimeout(this.#timer);
     this.#run += 1;
-    this.#opening?.then((stage) => stage.close(), () => {});
-    this.#element.remove();
+    this.#viewport.close();
+    this.inspector.remove();
     callWorker("forget", this.#slot);
   }
 }

@@ -1,6 +1,7 @@
 // The parameters of a panel's method: numbers, words, and the tables of what it takes by name. Which
 // there are, with label, range, step and default, comes from the solver's own table.
 import { made } from "../stage/player.js";
+import { say } from "./texts.js";
 import { MarkerTable, ShapeTable, describe, number } from "./lists.js";
 
 /// The bounds of a method without soft ones.
@@ -21,10 +22,10 @@ export class Parameters {
   constructor(slot, changed) {
     this.#slot = slot;
     this.#changed = changed;
-    const owner = `method ${slot.toUpperCase()}`;
+    const owner = say("table.owner", { letter: slot.toUpperCase() });
     this.#shapes = new ShapeTable(owner, changed);
     this.#markers = new MarkerTable(owner, changed);
-    this.element = made("details", {}, made("summary", {}, "Parameters"), this.#fields);
+    this.element = made("details", {}, made("summary", {}, say("parameters")), this.#fields);
     this.tables = [this.#shapes.element, this.#markers.element];
   }
 
@@ -43,14 +44,14 @@ export class Parameters {
   #control(row) {
     const label = row.unit ? `${row.label}, ${row.unit}` : row.label;
     if (row.kind === "word") {
-      const select = made("select", { name: row.key }, new Option("default", ""), ...row.words.map((word) => new Option(word, word)));
+      const select = made("select", { name: row.key }, new Option(say("parameters.default"), ""), ...row.words.map((word) => new Option(word, word)));
       select.addEventListener("change", this.#changed);
       return this.#field(row, label, [select]);
     }
     if (row.kind === "interval") {
-      const ends = ["from", "to"].map((end, i) =>
+      const ends = [say("parameters.from"), say("parameters.to")].map((end, i) =>
         this.#number(row, { placeholder: String(row.default[i]), ariaLabel: `${label}, ${end}` }));
-      return this.#field(row, `${label}, from and to`, ends);
+      return this.#field(row, say("parameters.interval", { label }), ends);
     }
     // A share is a slider, which always stands somewhere: one without a default is a number.
     if (row.minimum === 0 && row.maximum === 1 && !row.unit && row.default !== null) return this.#share(row, label);
@@ -132,24 +133,50 @@ export class Parameters {
     return spec;
   }
 
+  /// What the controls hold, as it can be kept and put back.
+  state() {
+    const inputs = [...this.#fields.querySelectorAll("[name]")];
+    return { fields: inputs.map(({ name, value }) => [name, value]), shapes: this.#shapes.state(), markers: this.#markers.state() };
+  }
+
+  /// Puts back what was kept of the same method.
+  putState({ fields = [], shapes = [], markers = [] }) {
+    const inputs = [...this.#fields.querySelectorAll("[name]")];
+    // An interval has two controls of one name, in their order.
+    const seen = new Map();
+    for (const [name, value] of fields) {
+      const nth = seen.get(name) ?? 0;
+      seen.set(name, nth + 1);
+      const input = inputs.filter((each) => each.name === name)[nth];
+      if (input) this.#fill(input, value);
+    }
+    this.#shapes.choose(this.#parameters.map(({ key }) => key), this.#ends());
+    this.#shapes.putState(shapes);
+    this.#markers.putState(markers);
+  }
+
+  #fill(input, value) {
+    input.value = value;
+    if (input.type === "range") input.previousElementSibling.querySelector("output").textContent = Number(input.value).toFixed(2);
+  }
+
   /// Takes the parameters of a method that was saved. Throws where this page has no place for one of them.
   take({ method, locked, bounds, importance, ...single }) {
     const fields = (name) => [...this.#fields.querySelectorAll(`[name="${CSS.escape(name)}"]`)];
     const strange = Object.keys(single).filter((name) => fields(name).length === 0);
-    if (strange.length > 0) throw new Error(`${strange.join(", ")}: ${method} takes no such parameter here; remove it from the file`);
+    if (strange.length > 0) throw new Error(say("parameters.strange", { names: strange.join(", "), method }));
     for (const { key, kind } of this.#parameters) {
       const value = single[key];
       for (const [i, input] of fields(key).entries()) {
         if (kind === "interval") input.value = value?.[i] ?? "";
-        else if (value !== undefined && value !== null) input.value = value;
-        if (input.type === "range") input.previousElementSibling.querySelector("output").textContent = Number(input.value).toFixed(2);
+        else if (value !== undefined && value !== null) this.#fill(input, value);
       }
     }
     const missing = [
-      ...this.#shapes.takeSpec({ locked, bounds }).map((name) => `no blendshape ${name}`),
-      ...this.#markers.takeSpec({ importance }).map((label) => `no marker ${label}`),
+      ...this.#shapes.takeSpec({ locked, bounds }).map((name) => say("parameters.no-shape", { name })),
+      ...this.#markers.takeSpec({ importance }).map((name) => say("parameters.no-marker", { name })),
     ];
-    if (missing.length > 0) throw new Error(`${missing.join(", ")} here: left out`);
+    if (missing.length > 0) throw new Error(say("parameters.left-out", { missing: missing.join(", ") }));
   }
 
   /// Shows the problems of the method, `{field, entry, text}` each, beside the controls that they are

@@ -2,9 +2,14 @@
 import { made } from "../stage/player.js";
 import { draw } from "../drawing/lines.js";
 import { movable } from "./drag.js";
+import { isShown, whenShown } from "./tabs.js";
+import { say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
+
+// Segments as the worker takes them.
+const edited = (segments) => segments.map(({ label, expression }) => ({ label, expression }));
 
 export class Timeline {
   #page;
@@ -12,20 +17,23 @@ export class Timeline {
   #curve = null;
   #rate = 1;
   #frames = 1;
-  #playhead = made("div", { className: "playhead" });
+  #isStale = false;
+  #isBusy = false;
 
-  /// `page`: {slot(), seek(ms), timeMs(), changed(segments), save(name, text), report(error)}
+  /// `page`: {history, slot(), seek(ms), timeMs(), changed(segments), save(name, text), report(error)}
   constructor(page) {
     this.#page = page;
     const guarded = (act) => () => act().catch(page.report);
     $("expressions-suggest").addEventListener("click", guarded(() => this.#suggest()));
+    // While the slider is moved the expressions are suggested anew, as one step that can be taken back.
+    $("expressions-sensitivity").addEventListener("input", () => this.#follow().catch(page.report));
     $("expression-add").addEventListener("click", guarded(() => this.#add()));
     $("expressions-file").addEventListener("change", (event) => this.#open(event.target).catch(page.report));
     $("save-csv").addEventListener("click", guarded(async () => page.save("expressions.csv", await callWorker("expressionsCsv"))));
     $("save-eaf").addEventListener("click", guarded(() => this.#saveEaf(undefined, "expressions.eaf")));
     $("save-study").addEventListener("click", guarded(async () => page.save("segments.json", await callWorker("studySegments"))));
     $("into-eaf").addEventListener("change", (event) => this.#into(event.target).catch(page.report));
-    $("expressions").addEventListener("toggle", () => this.#draw());
+    whenShown("expressions", () => this.#draw());
     addEventListener("resize", () => this.#draw());
   }
 
@@ -34,23 +42,45 @@ export class Timeline {
     [this.#frames, this.#rate] = [Math.max(frames, 1), rate];
     this.#curve = null;
     $("expressions-note").textContent = "";
+    this.#page.history.forget("segments");
     this.#put([]);
   }
 
   /// Segments that the worker has taken from elsewhere.
   take(segments) {
     this.#curve = null;
+    this.#done(say("expressions"), segments);
+  }
+
+  // A person has changed the segments: shown, and to be taken back.
+  #done(what, segments, same) {
+    const [before, after] = [this.#segments, segments];
+    const put = async (others) => this.#put((await callWorker("setExpressions", JSON.stringify(edited(others)))).segments);
+    this.#page.history.put({ what, same, about: "segments", undo: () => put(before), redo: () => put(after) });
     this.#put(segments);
   }
 
-  at(timeMs) {
-    this.#playhead.style.insetInlineStart = `${(100 * timeMs * this.#rate) / 1000 / this.#frames}%`;
+  // One question to the worker at a time; the newest place of the slider counts.
+  async #follow() {
+    this.#isStale = true;
+    if (this.#isBusy) return;
+    this.#isBusy = true;
+    try {
+      while (this.#isStale) {
+        this.#isStale = false;
+        await this.#suggest();
+      }
+    } finally {
+      this.#isBusy = false;
+    }
   }
 
   async #suggest() {
-    const found = await callWorker("suggestExpressions", this.#page.slot(), $("labels").value);
+    // A step of the slider to its end finds expressions that are eight times as weak, or as strong.
+    const sensitivity = 8 ** Number($("expressions-sensitivity").value);
+    const found = await callWorker("suggestExpressions", this.#page.slot(), $("labels").value, sensitivity);
     this.#curve = { level: found.level, threshold: found.threshold };
-    this.#put(found.segments);
+    this.#done(say("expressions.suggested"), found.segments, "sensitivity");
   }
 
   async #open(input) {
@@ -58,20 +88,19 @@ export class Timeline {
     input.value = "";
     if (!file) return;
     const found = await callWorker("expressionsFile", file.name, await file.text());
-    this.#put(found.segments);
+    this.#done(file.name, found.segments);
     $("expressions-note").textContent = found.leftOut ? `${file.name}: ${found.leftOut}` : "";
   }
 
   async #add() {
     const start = Math.round((this.#page.timeMs() * this.#rate) / 1000);
     const end = Math.min(start + Math.round(this.#rate), this.#frames);
-    const own = { label: `expression ${this.#segments.length + 1}`, expression: [Math.min(start, end - 1), end] };
-    await this.#set([...this.#segments, own]);
+    const own = { label: say("expressions.new", { number: this.#segments.length + 1 }), expression: [Math.min(start, end - 1), end] };
+    await this.#set([...this.#segments, own], own.label);
   }
 
-  async #set(segments) {
-    const edited = segments.map(({ label, expression }) => ({ label, expression }));
-    this.#put((await callWorker("setExpressions", JSON.stringify(edited))).segments);
+  async #set(segments, what) {
+    this.#done(what, (await callWorker("setExpressions", JSON.stringify(edited(segments)))).segments);
   }
 
   async #saveEaf(document, name) {
@@ -94,7 +123,7 @@ export class Timeline {
 
   #edit(index, change) {
     const segments = this.#segments.map((segment, i) => (i === index ? { ...segment, ...change } : segment));
-    this.#set(segments).catch((error) => {
+    this.#set(segments, segments[index].label).catch((error) => {
       this.#page.report(error);
       this.#put(this.#segments);
     });
@@ -102,11 +131,11 @@ export class Timeline {
 
   #row(segment, index) {
     const { label, expression, expression_s, clip_s } = segment;
-    const name = made("input", { type: "text", value: label, ariaLabel: "Name" });
+    const name = made("input", { type: "text", value: label, ariaLabel: say("name") });
     name.addEventListener("change", () => this.#edit(index, { label: name.value }));
     const field = (end) => {
       const input = made("input", {
-        type: "number", min: 0, step: 0.01, value: expression_s[end].toFixed(3), ariaLabel: `${end ? "End" : "Start"} of ${label}, seconds`,
+        type: "number", min: 0, step: 0.01, value: expression_s[end].toFixed(3), ariaLabel: say(end ? "expressions.end-of" : "expressions.start-of", { name: label }),
       });
       input.addEventListener("change", () => {
         const frames = [...expression];
@@ -115,21 +144,21 @@ export class Timeline {
       });
       return made("td", {}, input);
     };
-    const remove = made("button", { type: "button", ariaLabel: `Remove ${label}` }, "✕");
-    remove.addEventListener("click", () => this.#set(this.#segments.filter((_, i) => i !== index)).catch(this.#page.report));
+    const remove = made("button", { type: "button", ariaLabel: say("remove.what", { name: label }) }, "✕");
+    remove.addEventListener("click", () => this.#set(this.#segments.filter((_, i) => i !== index), say("remove.what", { name: label })).catch(this.#page.report));
     const clip = `${clip_s[0].toFixed(2)} – ${clip_s[1].toFixed(2)}`;
     return made("tr", {}, made("td", {}, name), field(0), field(1), made("td", {}, clip), made("td", {}, remove));
   }
 
   #draw() {
     const line = $("timeline");
-    if (!$("expressions").open) return;
+    if (!isShown("expressions")) return;
     const boxes = this.#segments.map((segment, i) => this.#box(segment, i));
-    line.replaceChildren(...boxes, this.#playhead);
+    line.replaceChildren(...boxes);
     if (!this.#curve) return;
     const canvas = made("canvas", { role: "img" });
     line.prepend(canvas);
-    draw(canvas, { lines: [{ name: "Distance from the neutral face", values: this.#curve.level }], unit: "" }, 0);
+    draw(canvas, { lines: [{ name: say("expressions.level"), values: this.#curve.level }], unit: "", marks: [this.#curve.threshold] }, null);
   }
 
   #box({ label, expression, clip_s }, index) {

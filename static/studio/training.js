@@ -1,4 +1,5 @@
 // What `regression` learns from: a capture and the weights that were played in it.
+import { say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -6,17 +7,25 @@ const bytes = async (file) => new Uint8Array(await file.arrayBuffer());
 
 export class TrainingFiles {
   #page;
+  // The neutral frames as they are, [first, end]; null without a capture.
+  #neutral = null;
 
-  /// `page`: {busy(words, work), captureOptions() -> [unit, rate], trainingChanged(state), report(error)}
+  /// `page`: {history, busy(words, work), captureOptions() -> [unit, rate], trainingChanged(state), report(error)}
   constructor(page) {
     this.#page = page;
     this.#file("training-file", async (file) => callWorker("trainingTake", file.name, await bytes(file), ...page.captureOptions()));
     this.#file("training-weights-file", async (file) => callWorker("trainingWeights", file.name, await bytes(file)));
-    $("training-built-in").addEventListener("click", () => this.#put("Playing the range of motion", () => callWorker("builtInTraining", 1)));
+    $("training-built-in").addEventListener("click", () => {
+      page.history.forget("training");
+      this.#put(say("training.playing"), () => callWorker("builtInTraining", 1));
+    });
     for (const id of ["training-first", "training-end"]) {
       $(id).addEventListener("change", () => {
-        const [first, end] = [Number($("training-first").value), Number($("training-end").value)];
-        this.#put("Setting the neutral frames", () => callWorker("setTrainingNeutral", first, end));
+        const [before, after] = [this.#neutral, [Number($("training-first").value), Number($("training-end").value)]];
+        const put = (ends) => this.#put(say("training.setting"), () => callWorker("setTrainingNeutral", ...ends));
+        put(after).then((state) => {
+          if (state && before) page.history.put({ what: say("training.first"), about: "training", undo: () => put(before), redo: () => put(after) });
+        });
       });
     }
   }
@@ -24,22 +33,25 @@ export class TrainingFiles {
   #file(id, read) {
     $(id).addEventListener("change", async ({ target }) => {
       const [file] = target.files;
-      if (file) await this.#put(`Reading ${file.name}`, () => read(file));
+      this.#page.history.forget("training");
+      if (file) await this.#put(say("files.reading", { name: file.name }), () => read(file));
       target.value = "";
     });
   }
 
   async #put(words, work) {
     const state = await this.#page.busy(words, work);
-    if (!state) return;
+    if (!state) return null;
     const { take, weights, neutral, missing } = state;
     const facts = [];
-    if (take) facts.push(`${take.file}: ${take.markers} markers, ${take.frames} frames at ${take.rate_hz} Hz`);
-    if (weights) facts.push(`${weights.file}: weights, ${weights.frames} frames, ${weights.columns} columns`);
+    if (take) facts.push(say("training.take", { ...take, rate: take.rate_hz }));
+    if (weights) facts.push(say("training.weights-facts", weights));
     if (missing !== null) facts.push(missing);
     $("training-facts").textContent = facts.join("; ");
     $("training-neutral").hidden = neutral === null;
     [$("training-first").value, $("training-end").value] = neutral ?? ["", ""];
+    this.#neutral = neutral;
     this.#page.trainingChanged(state);
+    return state;
   }
 }

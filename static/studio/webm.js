@@ -1,72 +1,9 @@
-// A video of pictures with the browser's encoder (WebCodecs), in a WebM file with each picture at its
-// exact time: how long drawing takes, and how busy the machine is, leaves no trace in it.
-
-const CODECS = [["vp09.00.51.08", "V_VP9"], ["vp8", "V_VP8"]];
-const BITS_PER_SECOND = 8_000_000;
-/// A player can jump to every so many pictures.
-const KEY_EVERY = 30;
-/// So many pictures may wait for the encoder.
-const WAITING = 4;
-
-/// Videos what `picture(i)` (an ImageBitmap) shows for i in 0..count, `rate` pictures a second; the file's
-/// bytes. `done(i)` is told of each picture.
-export async function encodedVideo({ count, rate, picture, done }) {
-  if (!globalThis.VideoEncoder) {
-    throw new Error("video: this browser has no encoder on this page; open it by https or on this machine's own address (127.0.0.1), or export pictures");
-  }
-  const first = await picture(0);
-  const { width, height } = first;
-  const config = { width, height, bitrate: BITS_PER_SECOND, framerate: rate, latencyMode: "quality" };
-  const codec = await supported(config);
-  if (!codec) throw new Error(`video: this browser encodes no WebM of ${width} x ${height}; export pictures instead`);
-  const chunks = [];
-  let failed = null;
-  const encoder = new VideoEncoder({
-    output: (chunk) => {
-      const bytes = new Uint8Array(chunk.byteLength);
-      chunk.copyTo(bytes);
-      chunks.push({ ms: Math.round(chunk.timestamp / 1000), isKey: chunk.type === "key", bytes });
-    },
-    error: (error) => (failed = new Error(`video: ${error.message}; export pictures instead`)),
-  });
-  try {
-    encoder.configure({ ...config, codec: codec[0] });
-    await encodeAll(encoder, { count, rate, first, picture, done, failed: () => failed });
-  } finally {
-    if (encoder.state !== "closed") encoder.close();
-  }
-  return webm({ width, height, rate, codec: codec[1], durationMs: (1000 * count) / rate }, chunks);
-}
-
-async function encodeAll(encoder, { count, rate, first, picture, done, failed }) {
-  for (let i = 0; i < count && !failed(); i++) {
-    const bitmap = i === 0 ? first : await picture(i);
-    const frame = new VideoFrame(bitmap, { timestamp: Math.round((1e6 * i) / rate), duration: Math.round(1e6 / rate) });
-    encoder.encode(frame, { keyFrame: i % KEY_EVERY === 0 });
-    frame.close();
-    bitmap.close();
-    done(i);
-    while (encoder.encodeQueueSize > WAITING && !failed()) await new Promise((resolve) => setTimeout(resolve, 1));
-  }
-  if (!failed()) {
-    await encoder.flush().catch((error) => {
-      throw failed() ?? error;
-    });
-  }
-  if (failed()) throw failed();
-}
-
-async function supported(config) {
-  for (const codec of CODECS) {
-    const answer = await VideoEncoder.isConfigSupported({ ...config, codec: codec[0] }).catch(() => null);
-    if (answer?.supported) return codec;
-  }
-  return null;
-}
+// A WebM file of encoded pictures, each at its exact time.
 
 /// The file (https://www.webmproject.org/docs/container/): header, length, track, where its key pictures
-/// are, then the pictures. `chunks`: {ms, isKey, bytes} in order of time.
-export function webm({ width, height, rate, codec, durationMs }, chunks) {
+/// are, then the pictures. `chunks`: {us: its time, isKey, bytes} in order of time.
+export function webm({ width, height, rate, codec, durationMs }, encoded) {
+  const chunks = encoded.map(({ us, ...chunk }) => ({ ms: Math.round(us / 1000), ...chunk }));
   const header = element("1a45dfa3", [
     element("4286", uint(1)), element("42f7", uint(1)), element("42f2", uint(4)), element("42f3", uint(8)),
     element("4282", ascii("webm")), element("4287", uint(4)), element("4285", uint(2)),

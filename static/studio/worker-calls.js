@@ -4,10 +4,10 @@ import { sendPanic } from "../panics.js";
 
 const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
-  "mapState", "solve", "difference", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
+  "mapState", "capturePoints", "solve", "difference", "differenceOver", "suggestExpressions", "setExpressions", "expressionsFile", "methods",
   "trainingTake", "trainingWeights", "builtInTraining", "setTrainingNeutral", "trainingState",
   "restGaze", "holdGaze", "gazeAtMarker", "gazeFile",
-  "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState",
+  "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState", "restoreLabels",
   "labelsFromExpressions", "labelsToExpressions",
   "makeLayout", "layoutFile", "layoutFromMap", "moveLayoutMarker", "dropLayoutMarker", "undoLayout", "rehearseLayout",
   "layoutState", "exertion", "exertionFile", "exertionModel",

@@ -27,6 +27,7 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
 
     // Eyes that are held turn in the panel; at rest the weights are what they were.
     const resting = await weightsHash(page, "A");
+    await unfold(page, "sources");
     await page.selectOption("#gaze-kind", "held");
     await page.fill("#gaze-azimuth", "12");
     await page.press("#gaze-azimuth", "Enter");
@@ -90,7 +91,7 @@ test("studio: the built-in head and actor, from nothing to every export", { skip
     await page.locator("#segments tr").first().locator("input[type=number]").nth(1).press("Enter");
     await page.selectOption("#range", "0");
     await unfold(page, "exports");
-    await page.selectOption("#export-rate", "25");
+    await page.fill("#export-rate", "25");
     const weights = String(await download(page, () => page.click("#export-weights")));
     assert.ok(weights.startsWith("frame,time,"));
     const glb = await download(page, () => page.click("#export-glb"));
@@ -239,6 +240,7 @@ test("studio: a real capture is matched and solved; what is broken is said", { s
     await page.goto(`${server.url}?backend=webgl2`);
     assert.ok((await fact(page, "A", "Residual")) < 3);
     await page.waitForFunction(() => document.querySelector("#map-facts").textContent.includes("41 markers"), null, { timeout: 60_000 });
+    await unfold(page, "sources");
     await page.click("#map-suggest");
     await page.waitForFunction(() => document.querySelector("#map-facts").textContent.includes("suggested"), null, { timeout: 60_000 });
     await page.waitForTimeout(8000);

@@ -196,7 +196,7 @@ test("studio: exertion on a phone, in the dark, by keyboard", { skip: noBrowser,
   try {
     await page.goto(`${server.url}?backend=webgl2`);
     await page.click("#avatar-built-in");
-    await page.locator("#exertion > summary").focus();
+    await page.locator("#tab-exertion").focus();
     await page.keyboard.press("Enter");
     let words = await facts(page);
     await page.waitForFunction(() => document.querySelector("#exertion-veil").hidden, null, { timeout: 60_000 });

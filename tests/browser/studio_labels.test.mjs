@@ -47,6 +47,7 @@ test("studio: labels are learnt, suggested, confirmed, relabelled, moved and car
     // Three expressions by hand become truth; the rest is suggested.
     await page.setInputFiles("#expressions-file", { name: "by-hand.csv", mimeType: "text/csv", buffer: Buffer.from(BY_HAND) });
     await page.waitForFunction(() => document.querySelectorAll("#segments tr").length === 3);
+    await unfold(page, "labelling");
     await page.click("#labels-take");
     await settled("3 of 3 confirmed");
     await page.click("#labels-learn");
@@ -86,6 +87,11 @@ test("studio: labels are learnt, suggested, confirmed, relabelled, moved and car
     await page.mouse.move(rect.x + rect.width - 30, rect.y + 20, { steps: 4 });
     await page.mouse.up();
     await settled("2 moved");
+    // Taken back and done again.
+    await page.keyboard.press("Control+z");
+    await settled("1 moved");
+    await page.keyboard.press("Control+Shift+z");
+    await settled("2 moved");
 
     // What is confirmed stays as it is when the rest is learnt and suggested anew.
     const confirmed = async () => (await boxes()).filter(({ state }) => state === "confirmed").map(({ label, left, width }) => [label, left, width]);
@@ -100,7 +106,7 @@ test("studio: labels are learnt, suggested, confirmed, relabelled, moved and car
     const shown = await page.locator("#label-line .segment:not([hidden])").evaluateAll((all) => all.map((box) => box.dataset.state));
     assert.ok(shown.every((state) => state === "unsure"), shown.join());
     await page.uncheck("#labels-unsure");
-    await page.locator("#expressions").screenshot({ path: join(screenshotFolder("studio"), "labels.png") });
+    await page.locator("#labelling").screenshot({ path: join(screenshotFolder("studio"), "labels.png") });
 
     // Into CSV, ELAN, a model, the expressions, a study.
     const csv = String(await download(page, () => page.click("#labels-csv")));
@@ -111,7 +117,9 @@ test("studio: labels are learnt, suggested, confirmed, relabelled, moved and car
     const model = await download(page, () => page.click("#labels-model"));
     await page.click("#labels-put");
     await page.waitForFunction(() => document.querySelectorAll("#segments tr").length >= 7);
+    await unfold(page, "expressions");
     const study = JSON.parse(String(await download(page, () => page.click("#save-study"))));
+    await unfold(page, "labelling");
     assert.ok(study.segments.some(({ id }) => id === "contempt"), JSON.stringify(study));
 
     // The model that was saved suggests labels for another take.

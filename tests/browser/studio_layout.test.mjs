@@ -118,7 +118,7 @@ test("studio: a layout is made, dragged, moved by keys, thinned, taken back and 
     await page.keyboard.press("Control+z");
     await changed(page, "#layout-note", dragged.note);
     assert.deepEqual(await shown(page), first, "the whole drag was one step");
-    assert.ok(await page.locator("#layout-undo").isDisabled());
+    assert.ok(await page.locator("#undo").isDisabled());
     await page.keyboard.press("PageDown");
     assert.notEqual(await page.textContent("#layout-chosen"), chosen);
 
@@ -148,7 +148,7 @@ test("studio: a layout is made, dragged, moved by keys, thinned, taken back and 
     const said = mimique(["layout", "check", join(folder, "layout.json"), "--avatar", join(folder, "sample/head.glb")]);
     assert.match(said, /29 face markers, 6 head markers/);
 
-    await page.click("#layout-undo");
+    await page.click("#undo");
     await page.waitForFunction(() => document.querySelectorAll("#layout-rows tr").length === 30);
 
     // What does not fit is said, and what is there stays.
@@ -189,6 +189,7 @@ test("studio: an existing map is thinned, on a phone and in the dark", { skip: n
     assert.ok(!(cheapest.name.replace(/^\d+ /, "") in map.markers));
 
     // A range of motion changes what markers are judged by.
+    await unfold(page, "sources");
     await page.click("#training-built-in");
     await page.waitForFunction(() => document.querySelector("#layout-note").textContent.includes("judged by the motion of built-in actor"), null, { timeout: 60_000 });
     assert.equal((await shown(page)).rows.length, 39);
@@ -201,7 +202,7 @@ test("studio: an existing map is thinned, on a phone and in the dark", { skip: n
     await page.waitForFunction(() => document.querySelector("#problem").textContent.includes("broken.json"));
     await page.setInputFiles("#layout-file", { name: "thinned.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify(map)) });
     await page.waitForFunction(() => document.querySelector("#problem").hidden);
-    await page.waitForFunction(() => document.querySelector("#layout-undo").disabled);
+    await page.waitForFunction(() => document.querySelector("#undo").disabled);
     assert.equal((await shown(page)).rows.length, 39);
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {

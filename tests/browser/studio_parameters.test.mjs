@@ -193,6 +193,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
     await page.setInputFiles("#training-file", take);
     await page.waitForFunction(() => !document.querySelector('section[aria-label="Method A"] select:not([name=blendWith]) > option[value=regression]').disabled, null, { timeout: 60_000 });
     assert.match(await page.locator("#training-facts").textContent(), /JawMoCap\.c3d: 41 markers, 1590 frames.*known\.csv: weights, 1590 frames/);
+    await unfold(page, "sources");
     await page.locator("#training-end").fill("90");
     await page.locator("#training-end").press("Enter");
 
@@ -246,6 +247,7 @@ test("studio: an avatar's own locked shapes; the tables wide, narrow, light and 
     assert.ok(weights.slice(1).every((line) => line.split(",")[at] === "0"));
 
     // Built-in training, from a click.
+    await unfold(page, "sources");
     await page.click("#training-built-in");
     await page.waitForFunction(() => !document.querySelector("option[value=regression]").disabled, null, { timeout: 60_000 });
 

@@ -22,7 +22,7 @@ for (const own of JSON.parse(readFileSync(join(cases, "cases.json"), "utf8"))) {
   const { boxes } = JSON.parse(suggested);
   boxes.forEach((box, index) => index % 2 === 0 && worker.confirmLabel(index));
   const state = worker.learnLabels("");
-  const said = { suggested, state, learnt: worker.labelModelJson(), csv: worker.labelsCsv(), timeline: worker.suggestExpressions("", "") };
+  const said = { suggested, state, learnt: worker.labelModelJson(), csv: worker.labelsCsv(), timeline: worker.suggestExpressions("", "", 1) };
   const different = Object.keys(said).filter((key) => said[key] !== own[key]);
   failed += different.length;
   console.log(`${different.length === 0 ? "same" : `DIFFERENT (${different.join(", ")})`} ${own.name}: ${boxes.length} boxes`);

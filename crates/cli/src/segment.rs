@@ -51,6 +51,9 @@ pub struct Args {
     /// Print the segments of a study file instead, as cuts of its capture of this identifier
     #[arg(long, value_name = "CAPTURE")]
     study: Option<String>,
+    /// How weak an expression may be: above 1 weaker ones are found, below 1 stronger ones alone
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = above_0)]
+    sensitivity: f64,
     /// Which peaks of the energy are borders: peaks, one a change, or literal, as the thesis words it
     #[arg(long, value_name = "RULE", default_value = "peaks")]
     borders: Rule,
@@ -61,6 +64,15 @@ pub struct Args {
 }
 
 /// That the options can be what they say.
+fn above_0(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("{text} is no number; give one above 0"))?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("{text} is not above 0; give a number above 0"))
+    }
+}
+
 fn check(args: &Args) -> anyhow::Result<()> {
     for (option, seconds) in [("--lead-in", args.lead_in), ("--lead-out", args.lead_out)] {
         if !(seconds >= 0.0 && seconds.is_finite()) {
@@ -109,6 +121,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         rule: args.borders.0,
         neutral: args.neutral.as_ref().map(|n| n.0.clone()),
         labels: args.labels.clone(),
+        sensitivity: args.sensitivity,
     };
     let mut found = suggest(channels, &options).map_err(|e| blame(e.to_string()))?;
     if let Some(file) = &args.from {

@@ -64,7 +64,7 @@ impl ComparedFace {
     }
 
     /// The parts that there are, from above to below, each with its places in `vertices`.
-    pub(crate) fn by_part(&self) -> Vec<(FacePart, Vec<usize>)> {
+    pub fn by_part(&self) -> Vec<(FacePart, Vec<usize>)> {
         let places = |part| -> Vec<usize> {
             (0..self.parts.len()).filter(|&i| self.parts[i] == part).collect()
         };

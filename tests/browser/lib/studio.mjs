@@ -13,7 +13,7 @@ function row(page, panel, name) {
 
 /** The number in a fact of a panel, such as its residual. */
 export async function fact(page, panel, name) {
-  await row(page, panel, name).waitFor({ timeout: 120_000 });
+  await row(page, panel, name).waitFor({ state: "attached", timeout: 120_000 });
   return Number.parseFloat(await row(page, panel, name).locator("dd").textContent());
 }
 
@@ -53,9 +53,20 @@ export async function violations(page) {
   });
 }
 
-/** Opens a section that is folded. */
+/** Opens a section: by its tab, or one that is folded. */
 export async function unfold(page, id) {
+  const tab = page.locator(`#tab-${id}`);
+  if ((await tab.count()) > 0) {
+    await tab.click();
+    await page.locator(`#${id}`).waitFor();
+    return;
+  }
   if (!(await page.locator(`#${id}`).evaluate((section) => section.open))) await page.locator(`#${id} > summary`).click();
+}
+
+/** Chooses a panel, whose method the right side then shows. */
+export async function choose(page, panel) {
+  await page.locator(`section[aria-label="View ${panel}"] .studio-choose`).click();
 }
 
 /** The built-in head and actor, solved. */

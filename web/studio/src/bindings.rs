@@ -221,9 +221,28 @@ impl Studio {
         self.workspace.marker_frame(slot, frame).map_err(error)
     }
 
+    /// [`Workspace::capture_points`] as JSON.
+    #[wasm_bindgen(js_name = capturePoints)]
+    pub fn capture_points(&self) -> Result<String, JsError> {
+        self.workspace.capture_points().map(text).map_err(error)
+    }
+
+    /// [`Workspace::mirrored_vertex`].
+    #[wasm_bindgen(js_name = mirroredVertex)]
+    pub fn mirrored_vertex(&self, vertex: usize) -> Result<usize, JsError> {
+        self.workspace.mirrored_vertex(vertex).map_err(error)
+    }
+
     /// [`Workspace::difference`] as JSON.
     pub fn difference(&self, a: &str, b: &str, frame: usize) -> Result<String, JsError> {
         let found = self.workspace.difference(a, b, frame).map_err(error)?;
+        Ok(serde_json::to_string(&found)?)
+    }
+
+    /// [`Workspace::difference_over`] as JSON.
+    #[wasm_bindgen(js_name = differenceOver)]
+    pub fn difference_over(&self, a: &str, b: &str) -> Result<String, JsError> {
+        let found = self.workspace.difference_over(a, b).map_err(error)?;
         Ok(serde_json::to_string(&found)?)
     }
 
@@ -261,8 +280,13 @@ impl Studio {
 
     /// [`Workspace::suggest_expressions`].
     #[wasm_bindgen(js_name = suggestExpressions)]
-    pub fn suggest_expressions(&mut self, slot: &str, labels: &str) -> Result<String, JsError> {
-        self.workspace.suggest_expressions(slot, labels).map(text).map_err(error)
+    pub fn suggest_expressions(
+        &mut self,
+        slot: &str,
+        labels: &str,
+        sensitivity: f64,
+    ) -> Result<String, JsError> {
+        self.workspace.suggest_expressions(slot, labels, sensitivity).map(text).map_err(error)
     }
 
     /// [`Workspace::set_expressions`].
@@ -339,6 +363,18 @@ impl Studio {
         end: usize,
     ) -> Result<String, JsError> {
         self.workspace.move_label(index, first, end).map(text).map_err(error)
+    }
+
+    /// [`Workspace::keep_labels`].
+    #[wasm_bindgen(js_name = keepLabels)]
+    pub fn keep_labels(&mut self) -> usize {
+        self.workspace.keep_labels()
+    }
+
+    /// [`Workspace::restore_labels`] as JSON.
+    #[wasm_bindgen(js_name = restoreLabels)]
+    pub fn restore_labels(&mut self, kept: usize) -> Result<String, JsError> {
+        self.workspace.restore_labels(kept).map(text).map_err(error)
     }
 
     /// [`Workspace::labels_state`].

@@ -34,13 +34,19 @@ struct Track {
 
 impl Workspace {
     /// Suggests expressions, from the weights of `slot` where there are some, else from the markers
-    /// in a still head; answers the timeline.
+    /// in a still head; answers the timeline. `sensitivity` as [`SuggestOptions`] has it.
     ///
     /// # Errors
     /// [`Problem`]: nothing to look at, or too short.
-    pub fn suggest_expressions(&mut self, slot: &str, labels: &str) -> Result<Value, Problem> {
+    pub fn suggest_expressions(
+        &mut self,
+        slot: &str,
+        labels: &str,
+        sensitivity: f64,
+    ) -> Result<Value, Problem> {
         let track = self.track(slot)?;
         let options = SuggestOptions {
+            sensitivity,
             neutral: self.map.neutral.clone().filter(|_| self.capture().is_ok()),
             labels: labels
                 .split(',')

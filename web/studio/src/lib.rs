@@ -14,6 +14,7 @@
 //! goes out is JSON text and typed arrays; the work itself is [`Workspace`]'s, which tests use natively.
 
 mod bindings;
+mod capture_points;
 mod difference;
 mod exertion;
 mod expressions;

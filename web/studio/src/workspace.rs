@@ -6,6 +6,7 @@ use mimique_actor::{
     Clip, Density, Emotion, HeadSpec, NOISE_MM, build_head, marker_sites, synthetic_take,
 };
 use mimique_avatar_files::{AvatarSettings, ReadAvatar, read_avatar_bytes};
+use mimique_geometry::Point;
 use mimique_mocap::{
     Capture, CaptureFacts, Format, LengthUnit, ReadOptions, Recording, WeightOptions, WeightsTable,
     read_weights,
@@ -132,7 +133,13 @@ impl Workspace {
         self.map.face.clear();
         let face = self.face.insert(Face { read, skin, sites });
         let avatar = &face.read.avatar;
+        // A box around the skin, metres: what a camera shows whole.
+        let ends = |pick: fn(f64, f64) -> f64, from: f64| {
+            let fold = |ends: [f64; 3], p: &Point| [0, 1, 2].map(|a| pick(ends[a], p[a]));
+            face.skin.mesh.positions.iter().fold([from; 3], fold)
+        };
         let facts = json!({
+            "bounds": [ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY)],
             "file": file,
             "name": avatar.name,
             "vertices": face.skin.mesh.positions.len(),

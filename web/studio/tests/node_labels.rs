@@ -121,7 +121,7 @@ fn write_cases(folder: &Path) {
             "state": state.to_string(),
             "learnt": workspace.label_model_json().unwrap(),
             "csv": workspace.labels_csv().unwrap(),
-            "timeline": workspace.suggest_expressions("", "").unwrap().to_string(),
+            "timeline": workspace.suggest_expressions("", "", 1.0).unwrap().to_string(),
         }));
     }
     std::fs::write(folder.join("cases.json"), serde_json::to_string(&cases).unwrap()).unwrap();

@@ -130,15 +130,70 @@ fn the_map_goes_out_and_comes_back() {
 }
 
 #[test]
+fn the_capture_stands_beside_the_head_as_the_head_does() {
+    let mut workspace = built_in();
+    let points = workspace.capture_points().unwrap();
+    let state = workspace.map_state().unwrap();
+    let (points, markers) = (points.as_array().unwrap(), state["markers"].as_array().unwrap());
+    assert_eq!(points.len(), markers.len());
+    // The actor's own proportions are left: within two centimetres of where the markers sit on the avatar.
+    for (point, marker) in points.iter().zip(markers).filter(|(_, m)| !m["vertex"].is_null()) {
+        let apart = (0..3).map(|a| (number(&point[a]) - number(&marker["position"][a])).powi(2));
+        assert!(apart.sum::<f64>().sqrt() < 0.02, "{marker} {point}");
+    }
+    // The mirror of a mirrored vertex is the vertex, on the built-in head, whose halves are alike.
+    let left = markers.iter().find(|m| m["label"] == "brow_inner_left").unwrap();
+    let right = markers.iter().find(|m| m["label"] == "brow_inner_right").unwrap();
+    let vertex = |m: &Value| m["vertex"].as_u64().unwrap() as usize;
+    let there = workspace.mirrored_vertex(vertex(left)).unwrap();
+    assert_eq!(workspace.mirrored_vertex(there).unwrap(), vertex(left));
+    let mut side = |v: usize| {
+        let found = workspace.place("chin", Some(v), false).unwrap();
+        number(
+            &found["markers"].as_array().unwrap().iter().find(|m| m["label"] == "chin").unwrap()["position"]
+                [0],
+        )
+    };
+    assert!(side(there) * side(vertex(left)) < 0.0 && side(there) * side(vertex(right)) > 0.0);
+    assert!(workspace.mirrored_vertex(usize::MAX).is_err());
+}
+
+#[test]
+fn methods_are_held_against_each_other_part_by_part() {
+    let mut workspace = built_in();
+    workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
+    workspace.solve("b", r#"{"method": "box"}"#).unwrap();
+    let table = workspace.difference_over("b", "a").unwrap();
+    let names: Vec<&str> = table.iter().map(|row| row.part.as_str()).collect();
+    assert_eq!(names.last(), Some(&"Face"));
+    assert!(names.contains(&"Mouth") && names.contains(&"Brow"), "{names:?}");
+    let face = table.last().unwrap();
+    let largest = table.iter().fold(0.0, |most: f64, row| most.max(row.largest_mm));
+    assert_eq!(face.largest_mm, largest, "the face's largest is one of its parts'");
+    assert!(face.rms_mm > 0.0 && face.rms_mm < face.largest_mm, "{face:?}");
+    let there = workspace.difference("b", "a", face.largest_frame).unwrap();
+    let near = there.vertices_mm.iter().any(|&mm| (f64::from(mm) - face.largest_mm).abs() < 1e-9);
+    assert!(near, "a vertex of that frame is as far: {face:?}");
+    assert!(workspace.difference_over("a", "a").unwrap().iter().all(|row| row.largest_mm == 0.0));
+    assert!(workspace.difference_over("a", "c").is_err());
+}
+
+#[test]
 fn expressions_are_suggested_mended_and_carried() {
     let mut workspace = built_in();
     workspace.solve("a", r#"{"method": "lsts"}"#).unwrap();
-    let found = workspace.suggest_expressions("a", "one, two").unwrap();
+    let found = workspace.suggest_expressions("a", "one, two", 1.0).unwrap();
     let segments = found["segments"].as_array().unwrap();
     // Eighteen are played; what is suggested beyond them is a blink's length.
     let seconds = |s: &&Value| number(&s["expression_s"][1]) - number(&s["expression_s"][0]);
     assert_eq!(segments.iter().filter(|s| seconds(s) > 0.8).count(), 18, "{found}");
     assert!(segments.len() <= 20, "{found}");
+    // Of a third of the sensitivity the strong ones are left.
+    let fewer = workspace.suggest_expressions("a", "", 0.3).unwrap();
+    let left = fewer["segments"].as_array().unwrap().len();
+    assert!(left > 0 && left < segments.len(), "{fewer}");
+    let found = workspace.suggest_expressions("a", "one, two", 1.0).unwrap();
+    let segments = found["segments"].as_array().unwrap();
     assert_eq!((&segments[0]["label"], &segments[1]["label"]), (&"one".into(), &"two".into()));
     let edited = r#"[{"label": "joy", "expression": [100, 300]}, {"label": "fear", "expression": [600, 900]}]"#;
     workspace.set_expressions(edited).unwrap();

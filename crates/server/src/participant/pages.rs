@@ -123,7 +123,7 @@ pub(super) async fn may_preview(app: &App, study: &str, headers: &HeaderMap) -> 
 /// The studio: everything in it happens in the browser.
 pub(crate) async fn studio(State(app): State<App>, headers: HeaderMap) -> Result<Response, Error> {
     may_look(&app, &headers).await?;
-    studio_page(&app.assets, &StudioFiles::new())
+    studio_page(&app.assets, &StudioFiles::new(), &headers)
 }
 
 /// Lets researchers see what participants should not, or everybody (none) where the server is told so.

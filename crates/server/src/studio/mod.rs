@@ -51,8 +51,8 @@ pub async fn serve_studio(
     Ok(axum::serve(listener, router).with_graceful_shutdown(stop).await?)
 }
 
-async fn show(State(studio): State<StudioState>) -> Result<Response, Error> {
-    studio_page(&studio.assets, &studio.files)
+async fn show(State(studio): State<StudioState>, headers: HeaderMap) -> Result<Response, Error> {
+    studio_page(&studio.assets, &studio.files, &headers)
 }
 
 async fn file(

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use axum::body::Bytes;
-use axum::http::header;
+use axum::http::{HeaderMap, header};
 use axum::response::{Html, IntoResponse, Response};
 
 use crate::error::Error;
 use crate::files::assets::Assets;
+use crate::http::language::language_of;
 
 /// What a file is to the studio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,14 +46,21 @@ pub struct StudioFile {
 /// The files by what they are.
 pub type StudioFiles = BTreeMap<StudioRole, StudioFile>;
 
-/// The studio's page; `files` are what it opens by itself.
-pub(crate) fn studio_page(assets: &Assets, files: &StudioFiles) -> Result<Response, Error> {
+/// The studio's page in the language that `headers` ask for; `files` are what it opens by itself.
+pub(crate) fn studio_page(
+    assets: &Assets,
+    files: &StudioFiles,
+    headers: &HeaderMap,
+) -> Result<Response, Error> {
     let names: BTreeMap<&str, &str> =
         files.iter().map(|(role, file)| (role.word(), file.name.as_str())).collect();
     let names = serde_json::to_string(&names).unwrap_or_default();
     let prefix = assets.prefix();
-    let page = assets
-        .page("studio/studio.html", &[("assets", prefix.as_str()), ("files", names.as_str())])
-        .ok_or(Error::NotFound)?;
+    let values = [
+        ("assets", prefix.as_str()),
+        ("files", names.as_str()),
+        ("language", language_of(headers).code()),
+    ];
+    let page = assets.page("studio/studio.html", &values).ok_or(Error::NotFound)?;
     Ok(([(header::CACHE_CONTROL, "no-cache")], Html(page)).into_response())
 }

@@ -14,7 +14,7 @@ use super::peaks::nearest_quantile;
 use super::{Activity, ActivityOptions, BorderRule, Channels, TakeSegment};
 
 /// What the user decides.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SuggestOptions {
     /// How activity is measured.
     pub activity: ActivityOptions,
@@ -24,6 +24,20 @@ pub struct SuggestOptions {
     pub neutral: Option<Range<usize>>,
     /// Names of the expressions, in order of time; `expression 1`... where there are none left.
     pub labels: Vec<String>,
+    /// How weak an expression may be: the level above rest at which one begins is divided by it. 1 as it is found.
+    pub sensitivity: f64,
+}
+
+impl Default for SuggestOptions {
+    fn default() -> Self {
+        Self {
+            activity: ActivityOptions::default(),
+            rule: BorderRule::default(),
+            neutral: None,
+            labels: Vec::new(),
+            sensitivity: 1.0,
+        }
+    }
 }
 
 /// Why nothing can be suggested.
@@ -146,6 +160,7 @@ pub fn suggest(take: Channels<'_>, options: &SuggestOptions) -> Result<Suggestio
         })
         .collect();
     let (rest, threshold) = rest_and_threshold(&level, options.neutral.as_ref());
+    let threshold = rest + (threshold - rest) / options.sensitivity.max(f64::EPSILON);
     let shortest = (SHORTEST_S * take.rate_hz).ceil() as usize;
     let found = expressions_above(&level, rest, threshold, shortest);
     let tracks: Vec<&[f64]> = activity.smooth.chunks_exact(frames).collect();

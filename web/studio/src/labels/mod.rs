@@ -30,6 +30,8 @@ pub(crate) struct Labelling {
     probabilities: Option<Rows>,
     /// Labels that were last learnt from suggestions, as none of theirs was confirmed.
     from_suggestions: Vec<usize>,
+    /// The boxes as they were kept, to be taken back to; those of another model are gone.
+    kept: Vec<Boxes>,
 }
 
 impl Labelling {
@@ -137,6 +139,7 @@ impl Workspace {
             // One take cannot be held out of itself.
             model.temperature = before.temperature;
         }
+        self.labels.kept.clear();
         self.labels.model = Some(model);
         self.labels.from_suggestions = from_suggestions;
         self.suggest_labels(slot)
@@ -148,6 +151,24 @@ impl Workspace {
     /// [`Problem`]: no such box.
     pub fn confirm_label(&mut self, index: usize) -> Result<Value, Problem> {
         self.label_box(index)?.confirmed = true;
+        Ok(self.labels_state())
+    }
+
+    /// Keeps the boxes as they are now; answers the number that [`Workspace::restore_labels`] takes.
+    pub fn keep_labels(&mut self) -> usize {
+        self.labels.kept.push(self.labels.boxes.clone());
+        self.labels.kept.len() - 1
+    }
+
+    /// The boxes as they were kept under a number, under the same model.
+    ///
+    /// # Errors
+    /// [`Problem`]: nothing is kept under it.
+    pub fn restore_labels(&mut self, kept: usize) -> Result<Value, Problem> {
+        let boxes = self.labels.kept.get(kept).cloned();
+        self.labels.boxes = boxes.ok_or_else(|| {
+            Problem::of("labels", format!("nothing is kept under {kept}; they were learnt anew"))
+        })?;
         Ok(self.labels_state())
     }
 

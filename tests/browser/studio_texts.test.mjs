@@ -1,0 +1,51 @@
+// The studio's table of texts: every text in English and in French, with the same words to fill in; every text that
+// the page or its scripts ask for is in it, and none that nothing asks for; no words stand in the page itself.
+
+import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { root } from "./lib/server.mjs";
+
+const folder = join(root, "static/studio");
+const { WORDS } = await import(pathToFileURL(join(folder, "words.js")));
+const html = readFileSync(join(folder, "studio.html"), "utf8");
+const scripts = readdirSync(folder).filter((name) => name.endsWith(".js") && !name.startsWith("words")).map((name) => [name, readFileSync(join(folder, name), "utf8")]);
+
+test("studio: every text is in both languages, with the same words to fill in", () => {
+  const filled = (text) => [...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name).sort();
+  for (const [key, texts] of Object.entries(WORDS)) {
+    assert.equal(texts.length, 2, key);
+    assert.ok(texts.every((text) => typeof text === "string" && text.trim() !== ""), `${key}: a text is empty`);
+    assert.deepEqual(filled(texts[1]), filled(texts[0]), `${key}: other words are filled in`);
+  }
+});
+
+test("studio: the page and its scripts ask for texts that there are, and for all of them", () => {
+  const asked = new Set([...html.matchAll(/data-say(?:-label|-placeholder)?="([^"]+)"/g)].map(([, key]) => key));
+  // A text is asked for by its key, a key that is chosen among some, or the beginning of a key.
+  const begun = new Set();
+  for (const [, text] of scripts) {
+    for (const [, key] of text.matchAll(/"([a-z][\w.-]*)"/g)) if (key in WORDS) asked.add(key);
+    for (const [, start] of text.matchAll(/say\(`([\w.-]+\.)\$\{/g)) begun.add(start);
+    for (const [, key] of text.matchAll(/say\("([^"]+)"/g)) assert.ok(key in WORDS, `${key}: no such text`);
+    for (const [, id] of text.matchAll(/named\("([\w-]+)"/g)) {
+      assert.ok(`command.${id}` in WORDS, `command.${id}: no such text`);
+      asked.add(`command.${id}`);
+    }
+  }
+  for (const key of asked) assert.ok(key in WORDS, `${key}: no such text`);
+  const idle = Object.keys(WORDS).filter((key) => !asked.has(key) && ![...begun].some((start) => key.startsWith(start)));
+  const whatOf = idle.filter((key) => !/^(undo|redo)\.what$/.test(key));
+  assert.deepEqual(whatOf, [], "texts that nothing asks for");
+});
+
+test("studio: the page's own HTML has no words in one language", () => {
+  const body = html.slice(html.indexOf("<body"), html.indexOf("<noscript>")).replaceAll(/<!--.*?-->/gs, "");
+  const words = [...body.matchAll(/>([^<]+)</g)].map(([, text]) => text.trim()).filter(Boolean);
+  // Units, sizes, keys, the languages' own names and what is not yet counted say the same in both.
+  const neutral = /^(mm|cm|m|\d+ × \d+.*|[½¼¹⁄₁₀1]+ ×|Ctrl K|English|Français|0\.00 s)$/;
+  assert.deepEqual(words.filter((text) => !neutral.test(text)), []);
+  assert.ok(!/\s(?:aria-label|placeholder|title)="/.test(body), "labels come from the table");
+});
