@@ -47,6 +47,11 @@ test("studio workbench: one window, one click to a face, names, undo, palette, a
       assert.ok(curve.y > face.y + face.height && curve.y < height, JSON.stringify(curve));
       await page.screenshot({ path: join(shots, `workbench-${width}.png`) });
     }
+    // The play head stands over the curves where it stands over the seconds.
+    const end = await page.locator("#scrub").evaluate((scrub) => Number(scrub.max));
+    await page.locator("#scrub").fill(String(Math.round(0.75 * end)));
+    const [ruler, line] = [await page.locator("#ruler").boundingBox(), await page.locator("#playline").evaluate((head) => head.getBoundingClientRect().left)];
+    assert.ok(Math.abs(line - (ruler.x + 46 + 0.75 * (ruler.width - 46))) < 3, `${line} ${JSON.stringify(ruler)}`);
     assert.ok(!(await page.locator("#sources").evaluate((files) => files.open)), "the files are one row");
     assert.match(await page.textContent("#files-brief"), /built-in head, built-in actor/);
     assert.deepEqual(await violations(page), []);
