@@ -149,11 +149,10 @@ impl<'a> Sources<'a> {
             return (None, vec![PrepareError::new("/stimuli/captures", message)]);
         };
         let mut faults = Vec::new();
+        let file = sound(self.capture(segment, &at), &mut faults);
         let map = sound(self.marker_map(id, entry, avatar), &mut faults);
         let gaze = sound(self.gaze(segment), &mut faults).flatten();
-        let Some(file) = sound(self.capture(segment, &at), &mut faults) else {
-            return (None, faults);
-        };
+        let Some(file) = file else { return (None, faults) };
         let shown = |[first, end]: [usize; 2]| file.frames.shown(first..end);
         let neutral = entry.neutral.map(shown).transpose();
         let neutral =

@@ -620,7 +620,7 @@ NoReasonOfSmallestEffect { hypothesis: String }: "no-reason",
     "nothing says why a smaller difference of \"{hypothesis}\" does not matter",
     "add \"smallestEffectReason\", which the preregistration prints";
 TooFewItems { items: Counted, needed: usize }: "wrong-length",
-    "{items}, which make no scale", "name at least {needed}";
+    "a scale of {items}", "name at least {needed}";
 ItemWithoutNumber { question: String }: "not-a-number",
     "\"{question}\" is not answered by a number, so that it cannot be added up",
     "name a rating, a typed number, or a row of a matrix whose options are numbers";
