@@ -43,7 +43,9 @@ test("studio: blendshapes locked and bounded, markers weighed; `mimique solve` t
     let hash = await weightsHash(page, "A");
     const csv = async () => {
       await unfold(page, "exports");
-      return String(await download(page, () => page.click("#export-weights")));
+      const text = String(await download(page, () => page.click("#export-weights")));
+      await unfold(page, "method");
+      return text;
     };
     const column = (text, name) => {
       const [header, ...rows] = text.trim().split("\n");
@@ -204,6 +206,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
     await weightsHash(page, "A", learnt);
     await unfold(page, "exports");
     const own = String(await download(page, () => page.click("#export-weights")));
+    await unfold(page, "method");
     writeFileSync(file("settings.json"), await download(page, () => page.getByRole("button", { name: "Save settings of method A" }).click()));
     const training = ["--training", take, "--training-weights", file("known.csv"), "--training-neutral", "0:90"];
     mimique(["solve", ...files, "--settings", file("settings.json"), ...training, "--out", file("w.csv")]);
@@ -238,11 +241,14 @@ test("studio: an avatar's own locked shapes; the tables wide, narrow, light and 
     ]);
     await page.waitForFunction(() => document.querySelector("#avatar-facts").textContent.includes("mine.glb"), null, { timeout: 60_000 });
     await weightsHash(page, "A", before);
+    await unfold(page, "method");
     await table(page, "Blendshapes");
     const own = page.getByLabel("jawOpen locked at 0", { exact: true });
     assert.ok((await own.isChecked()) && (await own.isDisabled()));
     assert.match(await page.locator(`${PANEL} tr[data-name="jawOpen"] .note`).textContent(), /locked by the avatar/);
+    await unfold(page, "exports");
     const weights = String(await download(page, () => page.click("#export-weights"))).trim().split("\n");
+    await unfold(page, "method");
     const at = weights[0].split(",").indexOf("jawOpen");
     assert.ok(weights.slice(1).every((line) => line.split(",")[at] === "0"));
 
