@@ -31,7 +31,9 @@ fn main() -> Result<()> {
         arguments.split_first().ok_or("usage: pack_sizes STUDY.json|ict [CLIP ...]")?;
     let folder = tempfile::tempdir()?;
     let (study, places) = study(study_file, folder.path())?;
-    let prepared = prepare(&study, &places, &mut |_| {})?;
+    let all =
+        |faults: Vec<_>| faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+    let prepared = prepare(&study, &places, &mut |_| {}).map_err(all)?;
     let out = &mut std::io::stdout().lock();
 
     let read = |hash: &str| std::fs::read(places.packs.join(hash));
