@@ -20,11 +20,12 @@ use serde_json::json;
 use tokio::net::TcpListener;
 
 use crate::check::check_file;
+use crate::study_file::in_data_folder;
 
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Study files to host
+    /// Study files to host, or ZIP archives of their folders
     #[arg(required = true)]
     studies: Vec<PathBuf>,
     /// Address and port to listen on
@@ -142,7 +143,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     })?;
     let packs_folder = args.data_dir.join("packs");
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
-    let studies = load_studies(&args.studies, &packs_folder, stage)?;
+    let files: Vec<PathBuf> = (args.studies.iter())
+        .map(|given| in_data_folder(given, &args.data_dir))
+        .collect::<anyhow::Result<_>>()?;
+    let studies = load_studies(&files, &packs_folder, stage)?;
     let mut packs = PackStore::default();
     for clip in studies.iter().flat_map(|study| study.bundle().clips.values()) {
         for hash in clip.packs() {
@@ -173,7 +177,11 @@ async fn host(
     packs.load_earlier_versions(&storage, &args.data_dir.join("packs")).await?;
     let hosted: Vec<Hosted> = studies.iter().map(Hosted::of).collect();
     let kind = storage.kind();
-    let access = Access { open_preview: args.open_preview, public_url: args.public_url.clone() };
+    let access = Access {
+        open_preview: args.open_preview,
+        public_url: args.public_url.clone(),
+        studio_alone: false,
+    };
     let app = App::new(studies, packs, assets, storage)
         .await?
         .with_access(access)

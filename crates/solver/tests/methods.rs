@@ -377,7 +377,7 @@ fn refusals_name_field_value_and_remedy() {
     );
     assert_eq!(
         say(&|s| s.locked = vec!["jawOpen".into()], Method::Lsts),
-        "locked: no shape 'jawOpen'; use names of bump0, bump1, bump2, bump3, bump4, bump5, \
+        "locked.0: no shape 'jawOpen'; use names of bump0, bump1, bump2, bump3, bump4, bump5, \
          bump6, bump7, bump8"
     );
     assert!(

@@ -61,11 +61,6 @@ impl Headers {
     }
 }
 
-/// The headers of a server with default settings.
-pub(crate) async fn security_headers(request: Request, next: Next) -> Response {
-    settled_headers(State(Headers::of(&Settings::default(), false)), request, next).await
-}
-
 pub(super) async fn settled_headers(
     State(Headers(fixed)): State<Headers>,
     request: Request,

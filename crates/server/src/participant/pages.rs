@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use axum::extract::{Path, Query, RawQuery, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
-use axum::response::{Html, IntoResponse, Response};
+use axum::response::{Html, IntoResponse, Redirect, Response};
 use maud::{DOCTYPE, html};
 use mimique_storage::{Role, StorageError};
 use serde::Deserialize;
@@ -16,11 +16,13 @@ use crate::error::Error;
 use crate::http::headers::content_security_policy;
 use crate::http::language::accepted;
 use crate::state::App;
-use crate::studio::page::{StudioFiles, studio_page};
 use mimique_study::Multilingual as _;
 
 /// The list of studies, for those who may know it.
-pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {
+pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Response {
+    if app.access.studio_alone {
+        return Redirect::temporary("/studio").into_response();
+    }
     let assets = app.assets.prefix();
     // Which studies there are is for those who were told.
     let who = may_look(&app, &headers).await;
@@ -64,7 +66,7 @@ pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<St
             }
         }
     };
-    Html(page.into_string())
+    Html(page.into_string()).into_response()
 }
 
 /// The page's addresses are relative to the slash; what recruitment appended goes along.
@@ -118,12 +120,6 @@ pub(super) async fn may_preview(app: &App, study: &str, headers: &HeaderMap) -> 
         Some(who) => who.needs_in(study, Role::Viewer),
         None => Ok(()),
     }
-}
-
-/// The studio: everything in it happens in the browser.
-pub(crate) async fn studio(State(app): State<App>, headers: HeaderMap) -> Result<Response, Error> {
-    may_look(&app, &headers).await?;
-    studio_page(&app.assets, &StudioFiles::new(), &headers)
 }
 
 /// Lets researchers see what participants should not, or everybody (none) where the server is told so.
