@@ -382,7 +382,7 @@ fn refusals_name_field_value_and_remedy() {
     );
     assert!(
         say(&|s| s.importance = BTreeMap::from_iter([("X".into(), 1.0)]), Method::Box)
-            .starts_with("importance: no marker 'X'; use names of M00, M01")
+            .starts_with("importance.X: no marker 'X'; use names of M00, M01")
     );
     assert_eq!(
         say(&|s| s.laplacian = Some(LaplacianKind::Umbrella), Method::Lsts),

@@ -25,7 +25,7 @@ use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
 use crate::participant::{pages, previews, withdrawal};
-use crate::researcher::handlers::{accounts, people, studies};
+use crate::researcher::handlers::{accounts, people, streams, studies};
 use crate::state::App;
 use crate::studio;
 use crate::uploads::handlers as uploads;
@@ -83,7 +83,7 @@ fn researchers(app: &App) -> Router<App> {
         .route("/studio", get(studio::show))
         .route("/researcher", get(studies::home))
         .route(STUDY, get(studies::study))
-        .route(&format!("{STUDY}/live"), get(studies::live))
+        .route(&format!("{STUDY}/live"), get(streams::live))
         .route(&format!("{STUDY}/withdraw"), post(studies::withdraw))
         .route(&format!("{STUDY}/keep"), post(studies::keep_overdue))
         .route("/researcher/clock", post(studies::confirm_clock))

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::http::headers::content_security_policy;
+use crate::http::headers::{Embeddable, content_security_policy};
 use crate::http::language::accepted;
 use crate::state::App;
 use mimique_study::Multilingual as _;
@@ -95,12 +95,21 @@ pub(crate) async fn participant(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     let asked = asked.lang.as_deref();
-    let mut page = from_template(&app, "participant/index.html", &study, asked, &headers)?;
-    if let Some(triggers) = app.study(&study)?.study().triggers {
+    let page = from_template(&app, "participant/index.html", &study, asked, &headers)?;
+    let triggers = app.study(&study)?.study().triggers.as_ref().map(|own| own.origin());
+    let embedding = &app.settings.embedding;
+    let mut page = match embedding.is_empty() {
+        true => answered(page),
+        false => answered(embedded(&app, &study, &page)),
+    };
+    if triggers.is_some() || !embedding.is_empty() {
         let packs = app.settings.packs_address.as_deref();
-        let policy = content_security_policy(packs, Some(&triggers.origin()));
+        let policy = content_security_policy(packs, triggers.as_deref(), embedding);
         let policy = HeaderValue::from_str(&policy).map_err(Error::internal)?;
         page.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    if !embedding.is_empty() {
+        page.extensions_mut().insert(Embeddable);
     }
     Ok(page)
 }
@@ -111,7 +120,7 @@ pub(crate) async fn preview(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     may_preview(&app, &study, &headers).await?;
-    from_template(&app, "researcher/preview.html", &study, None, &headers)
+    from_template(&app, "researcher/preview.html", &study, None, &headers).map(answered)
 }
 
 /// Lets those in who may see a study's stimuli.
@@ -160,7 +169,7 @@ fn from_template(
     study: &str,
     asked: Option<&str>,
     headers: &HeaderMap,
-) -> Result<Response, Error> {
+) -> Result<String, Error> {
     let study = app.study(study)?;
     let language = study.study().language_among(asked.into_iter().chain(accepted(headers)));
     let values = [
@@ -172,7 +181,19 @@ fn from_template(
     ];
     let values: Vec<(&str, &str)> = values.iter().map(|(name, text)| (*name, &**text)).collect();
     let page = app.assets.participant_page(name, &values, study.study(), language);
-    let page = page.ok_or(Error::NotFound)?;
+    page.ok_or(Error::NotFound)
+}
+
+fn answered(page: String) -> Response {
     let kept = [(header::CACHE_CONTROL, "no-cache"), (header::VARY, "accept-language")];
-    Ok((kept, Html(page)).into_response())
+    (kept, Html(page)).into_response()
+}
+
+/// The page with what tells the page that embeds it where it stands.
+fn embedded(app: &App, study: &str, page: &str) -> String {
+    let script = html! {
+        meta name="mimique-embedding" data-study=(study) data-origins=(app.settings.embedding.join(" "));
+        script type="module" src={ (app.assets.prefix()) "/participant/embedded.js" } {}
+    };
+    page.replacen("</head>", &format!("{}</head>", script.into_string()), 1)
 }

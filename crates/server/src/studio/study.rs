@@ -5,9 +5,9 @@ use axum::body::Body;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use futures_util::StreamExt as _;
 use mimique_storage::Role;
 use serde_json::json;
+use tokio_stream::StreamExt as _;
 
 use crate::accounts::csrf::{FormToken, check_origin};
 use crate::accounts::identity::Researcher;

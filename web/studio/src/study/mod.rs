@@ -19,6 +19,8 @@ use crate::workspace::{Origin, Problem, Take, Workspace};
 
 /// Folder of the files in the study's folder.
 const FOLDER: &str = "stimuli";
+/// The marker map in it.
+const MAP: &str = "markers.json";
 
 /// What a person wishes of the study.
 #[derive(Debug, Deserialize)]
@@ -165,7 +167,7 @@ impl Workspace {
                     let words = "empty; place the markers on the avatar, or suggest a map";
                     return Err(Problem::of("marker map", words));
                 }
-                let map = folder.make("markers.json", self.map_json());
+                let map = folder.make(MAP, self.map_json());
                 capture.insert("markers".to_owned(), json!(map));
                 if !self.map.head.is_empty() {
                     capture.insert("head".to_owned(), json!(self.map.head));
@@ -263,6 +265,8 @@ impl Workspace {
                 folder.copy("training-weights", played)?;
             }
         }
+        // Its markers are those of the take.
+        capture.insert("markers".to_owned(), json!(format!("{FOLDER}/{MAP}")));
         if let Some(head) = &learnt_from.head {
             capture.insert("head".to_owned(), json!(head));
         }
