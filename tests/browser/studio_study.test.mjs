@@ -14,12 +14,10 @@ const noBrowser = skip(!executable && "Chromium not found");
 
 test("studio: saved as a study, previewed, checked and served", { skip: noBrowser }, async () => {
   const shown = await preview([]);
-  const browser = await open();
+  const browser = await open("webgl2", { viewport: { width: 1440, height: 900 } });
+  const { page, context, errors } = browser;
+  const shots = screenshotFolder("studio-study");
   try {
-    const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
-    const page = await context.newPage();
-    const complaints = [];
-    page.on("pageerror", (error) => complaints.push(String(error)));
     await builtIn(page, { url: shown.url });
     await page.click("#add-panel");
     await fact(page, "B", "Residual");
@@ -41,17 +39,15 @@ test("studio: saved as a study, previewed, checked and served", { skip: noBrowse
     await page.selectOption("#study-design", "identify-emotion");
     await page.check("#study-instrument-sus");
     assert.deepEqual(await violations(page), []);
-    if (screenshotFolder) await page.screenshot({ path: join(screenshotFolder, "studio-study.png") });
+    await page.screenshot({ path: join(shots, "pane.png") });
     const opened = context.waitForEvent("page");
     const archive = await download(page, () => page.click("#study-save"));
     const tab = await opened;
     await tab.waitForURL(/\/preview\/faces-of-mine$/, { timeout: 120_000 });
     assert.equal(await page.locator("#study-state a").getAttribute("href"), "/preview/faces-of-mine");
     await tab.locator("canvas").first().waitFor({ timeout: 60_000 });
-    if (screenshotFolder) {
-      await tab.waitForTimeout(3000);
-      await tab.screenshot({ path: join(screenshotFolder, "studio-study-preview.png") });
-    }
+    await tab.waitForTimeout(2000);
+    await tab.screenshot({ path: join(shots, "preview.png") });
 
     // The archive is what check and serve take.
     const file = join(mkdtempSync(join(tmpdir(), "mimique-")), "faces.zip");
@@ -67,7 +63,7 @@ test("studio: saved as a study, previewed, checked and served", { skip: noBrowse
     } finally {
       await server.stop();
     }
-    assert.deepEqual(complaints, []);
+    assert.deepEqual(errors, []);
 
     // In French and on a tablet.
     await page.setViewportSize({ width: 768, height: 1024 });
