@@ -45,6 +45,8 @@ export function commandsOf(page) {
     named("show-exertion", ["Alt+4"], show("exertion")),
     named("show-method", ["Alt+5"], show("method")),
     named("show-exports", ["Alt+6"], show("exports")),
+    named("show-study", ["Alt+0"], show("study")),
+    named("save-study", [], { can: () => !$("tab-study").disabled, run: () => (tabs.show("study"), $("study-save").click()) }),
     named("show-curves", ["Alt+7"], show("curves")),
     named("show-expressions", ["Alt+8"], show("expressions")),
     named("show-labelling", ["Alt+9"], show("labelling")),

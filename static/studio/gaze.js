@@ -13,6 +13,19 @@ export class GivenGaze {
   // What the file holds that the eyes follow: {name, bytes}.
   #file = null;
 
+  /// Where the eyes look, as a study file has it; null while they rest.
+  ofStudy() {
+    const { kind, angles, marker, file } = this.#known;
+    if (kind === "held") return { held: Object.fromEntries(ANGLES.map((id, i) => [id.replace("gaze-", ""), Number(angles[i])])) };
+    if (kind === "marker" && marker !== "") return { target: marker };
+    return kind === "file" && file ? { file: file.name } : null;
+  }
+
+  /// The file that the eyes follow, if they do.
+  get file() {
+    return this.#file && new File([this.#file.bytes], this.#file.name);
+  }
+
   /// `page`: {history, busy(words, work), gazeChanged()}
   constructor(page) {
     this.#page = page;

@@ -12,6 +12,8 @@ export class Sources {
   /// Facts of the avatar and of the take, null until they are there.
   avatar = null;
   take = null;
+  /// The files that they were opened from: {avatar, settings, take}.
+  files = {};
 
   /// `page`: {history, busy(words, work), report(error), changed() (another avatar or take), takeChanged(frames, rate), mapRead(state),
   /// mapChanged(state), mapPut(), gaze, training}
@@ -65,10 +67,12 @@ export class Sources {
   }
 
   async builtInAvatar() {
+    this.files.avatar = this.files.settings = undefined;
     await this.#avatarHere(await this.#page.busy(say("built-in.building"), () => callWorker("builtInAvatar", 1, 10_000)));
   }
 
   async builtInTake() {
+    this.files.take = undefined;
     await this.#takeHere(await this.#page.busy(say("built-in.playing"), () => callWorker("builtInTake", 1)));
   }
 
@@ -80,14 +84,20 @@ export class Sources {
     const settings = named(/\.avatar\.json$/i);
     const avatar = as === "avatar" ? files.find((file) => file !== settings) : named(/\.(glb|gltf|zip|tar|gz|xz)$/i);
     if (avatar) {
-      await this.#avatarHere(await reading(avatar, async () => callWorker("avatarFile", avatar.name, await bytes(avatar), await settings?.text())));
+      const facts = await reading(avatar, async () => callWorker("avatarFile", avatar.name, await bytes(avatar), await settings?.text()));
+      if (facts) Object.assign(this.files, { avatar, settings });
+      await this.#avatarHere(facts);
     }
     const rest = files.filter((file) => file !== avatar && file !== settings);
     for (const file of rest) {
       const isMap = as === "map" || (as !== "take" && (/\.json$/i.test(file.name) || (/\.csv$/i.test(file.name) && (await file.slice(0, 40).text()).startsWith("marker,role"))));
       if (isMap) await this.#openMap(file);
       else if (/\.eaf$/i.test(file.name)) this.#page.report(new Error(say("files.eaf", { name: file.name })));
-      else await this.#takeHere(await reading(file, async () => callWorker("takeFile", file.name, await bytes(file), ...this.captureOptions())));
+      else {
+        const facts = await reading(file, async () => callWorker("takeFile", file.name, await bytes(file), ...this.captureOptions()));
+        if (facts) this.files.take = file;
+        await this.#takeHere(facts);
+      }
     }
   }
 

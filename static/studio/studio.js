@@ -16,6 +16,7 @@ import { Palette } from "./palette.js";
 import { Ruler } from "./ruler.js";
 import { Shapes } from "./shapes.js";
 import { Sources } from "./sources.js";
+import { StudyPane } from "./study.js";
 import { wireSplits } from "./splits.js";
 import { Tabs } from "./tabs.js";
 import { fill, language, say } from "./texts.js";
@@ -124,6 +125,7 @@ const page = {
     const solved = player.panels.filter((panel) => panel.facts);
     $("transport").hidden = player.durationMs() === 0;
     tabs.can("exports", solved.length > 0);
+    tabs.can("study", faces.panels.some((panel) => panel.facts));
     const chosen = $("export-slot").value;
     $("export-slot").replaceChildren(...solved.map((panel) => new Option(panel.title(), panel.slot)));
     if (solved.some((panel) => panel.slot === chosen)) $("export-slot").value = chosen;
@@ -160,11 +162,12 @@ const timeline = new Timeline({
 });
 const labels = new Labels({ ...page, expressions: (others) => timeline.take(others) });
 wireExports({ ...page, panels: () => player.panels });
-new TrainingFiles(page);
+const trainingFiles = new TrainingFiles(page);
 const gaze = new GivenGaze(page);
 const sources = new Sources({
   ...page,
   async takeChanged(frames, rate) {
+    studyPane.takeChanged();
     await gaze.takeChanged();
     timeline.reset(frames, rate);
     await labels.reset(frames, rate);
@@ -181,6 +184,12 @@ const sources = new Sources({
     await layouts.sourcesChanged();
     if (sources.take) await faces.sourcesChanged(sources.take.kind === "weights");
   },
+});
+
+const studyPane = new StudyPane({
+  ...page,
+  gaze: () => gaze.ofStudy(),
+  files: () => ({ ...sources.files, ...trainingFiles.files, gaze: gaze.file }),
 });
 
 // What can be played: all, a segment, and, where a take is longer, the window of the exertion.

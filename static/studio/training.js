@@ -9,12 +9,14 @@ export class TrainingFiles {
   #page;
   // The neutral frames as they are, [first, end]; null without a capture.
   #neutral = null;
+  /// The files that were opened: {training, "training-weights"}.
+  files = {};
 
   /// `page`: {history, busy(words, work), captureOptions() -> [unit, rate], trainingChanged(state), report(error)}
   constructor(page) {
     this.#page = page;
-    this.#file("training-file", async (file) => callWorker("trainingTake", file.name, await bytes(file), ...page.captureOptions()));
-    this.#file("training-weights-file", async (file) => callWorker("trainingWeights", file.name, await bytes(file)));
+    this.#file("training-file", "training", async (file) => callWorker("trainingTake", file.name, await bytes(file), ...page.captureOptions()));
+    this.#file("training-weights-file", "training-weights", async (file) => callWorker("trainingWeights", file.name, await bytes(file)));
     $("training-built-in").addEventListener("click", () => {
       page.history.forget("training");
       this.#put(say("training.playing"), () => callWorker("builtInTraining", 1));
@@ -30,11 +32,11 @@ export class TrainingFiles {
     }
   }
 
-  #file(id, read) {
+  #file(id, what, read) {
     $(id).addEventListener("change", async ({ target }) => {
       const [file] = target.files;
       this.#page.history.forget("training");
-      if (file) await this.#put(say("files.reading", { name: file.name }), () => read(file));
+      if (file && (await this.#put(say("files.reading", { name: file.name }), () => read(file)))) this.files[what] = file;
       target.value = "";
     });
   }

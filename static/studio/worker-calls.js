@@ -10,7 +10,7 @@ const JSON_CALLS = new Set([
   "labelModel", "suggestLabels", "learnLabels", "confirmLabel", "releaseLabel", "relabel", "moveLabel", "labelsState", "restoreLabels",
   "labelsFromExpressions", "labelsToExpressions",
   "makeLayout", "layoutFile", "layoutFromMap", "moveLayoutMarker", "dropLayoutMarker", "undoLayout", "rehearseLayout",
-  "layoutState", "exertion", "exertionFile", "exertionModel",
+  "layoutState", "exertion", "exertionFile", "exertionModel", "studyLibrary", "study",
 ]);
 
 let worker = null;

@@ -26,7 +26,7 @@ export class Zip {
   #entries = [];
   #size = 0;
 
-  /// Adds a file; its name is plain ASCII. Throws where an archive can hold no more.
+  /// Adds a file; its name is in UTF-8. Throws where an archive can hold no more.
   add(name, bytes) {
     if (this.#size + bytes.length > LIMIT - 0x1000_0000 || this.#entries.length === MOST_FILES) {
       throw new Error(`${name}: the archive is full (4 GB, ${MOST_FILES} files); export a shorter part, or fewer frames per second`);
@@ -67,6 +67,8 @@ function record(mark, { name, crc, size }, length, at) {
   const view = new DataView(new ArrayBuffer(length));
   view.setUint32(0, mark, true);
   view.setUint16(at, 20, true);
+  // Names are in UTF-8.
+  view.setUint16(at + 2, 0x0800, true);
   view.setUint16(at + 8, DATE, true);
   view.setUint32(at + 10, crc, true);
   view.setUint32(at + 14, size, true);

@@ -15,11 +15,13 @@ use mimique_study::{
     Issue, Problem, Report, Severity, Study, check, check_opened, json_schema, resolve_path,
 };
 
+use crate::study_file::StudyFile;
+
 /// Options.
 #[derive(clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["study", "schema", "words"])))]
 pub struct Args {
-    /// Study file (JSON, comments allowed)
+    /// Study file (JSON, comments allowed), or a ZIP archive of its folder
     study: Option<PathBuf>,
     /// Print the JSON Schema of study files instead, for editors
     #[arg(long)]
@@ -59,17 +61,18 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "{}", serde_json::to_string_pretty(&json_schema())?)?;
         return Ok(());
     };
-    let mut report = check_opened_file(&file)?;
+    let opened = StudyFile::open(&file)?;
+    let mut report = check_opened_file(opened.path())?;
     let mut comparison = None;
     let mut sounds = Vec::new();
     if let Some(checked) = &report.study {
-        let mut advised = advised(checked.study(), &file);
-        sounds = study_sounds(checked.study(), &Places::of(&file, PathBuf::new()));
+        let mut advised = advised(checked.study(), opened.path());
+        sounds = study_sounds(checked.study(), &Places::of(opened.path(), PathBuf::new()));
         let at_fault: Vec<Issue> = sounds.iter().filter_map(fault_of_sound).collect();
         // What is wrong with a file is said once: the clips are not made of it.
         let without_clips = args.without_clips || !at_fault.is_empty();
         advised.extend(at_fault);
-        let clips = if without_clips { None } else { Some(clips(checked.study(), &file)?) };
+        let clips = if without_clips { None } else { Some(clips(checked.study(), opened.path())?) };
         report.issues.extend(advised);
         if let Some(clips) = clips {
             report.issues.extend(clips.issues);
@@ -90,9 +93,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "sounds": sounds.iter().map(sound_facts).collect::<Vec<_>>(),
             "comparison": comparison,
         });
-        writeln!(out, "{}", serde_json::to_string_pretty(&text)?)?;
+        writeln!(out, "{}", opened.said(&serde_json::to_string_pretty(&text)?))?;
     } else {
-        print(&mut out, &file, &report)?;
+        print(&mut out, &file, &opened, &report)?;
         tell_sounds(&mut out, &sounds)?;
         if let Some(comparison) = &comparison {
             differences(&mut out, comparison)?;
@@ -283,7 +286,12 @@ fn looked_up(file: &Path) -> impl Fn(&str) -> Result<(), Problem> {
     }
 }
 
-fn print(out: &mut impl std::io::Write, file: &Path, report: &Report) -> std::io::Result<()> {
+fn print(
+    out: &mut impl std::io::Write,
+    file: &Path,
+    opened: &StudyFile,
+    report: &Report,
+) -> std::io::Result<()> {
     for issue in &report.issues {
         let severity = match issue.severity {
             Severity::Error => "error",
@@ -291,7 +299,8 @@ fn print(out: &mut impl std::io::Write, file: &Path, report: &Report) -> std::io
         };
         let place = issue.place();
         let file = file.display();
-        writeln!(out, "{severity}: {file}: {place}: {}; {}", issue.message(), issue.remedy())?;
+        let message = opened.said(&issue.message());
+        writeln!(out, "{severity}: {file}: {place}: {message}; {}", issue.remedy())?;
     }
     match &report.study {
         None => writeln!(

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use mimique_avatar_files::AvatarSettings;
-use mimique_server::{Assets, StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
+use mimique_server::{Access, App, Assets, PackStore, StudioFile, StudioFiles, StudioRole, serve};
+use mimique_storage::Storage;
 use serde_json::json;
 use tokio::net::TcpListener;
 
@@ -39,11 +40,20 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         None => Assets::embedded()?,
     };
     let files = given(&args)?;
+    // Studies that the studio makes are hosted for as long as it is open.
+    let folder = tempfile::tempdir().context("a folder for what the studio makes")?;
+    let database = format!("sqlite:{}", folder.path().join("studio.sqlite").display());
     let runtime = tokio::runtime::Runtime::new().context("the server's threads")?;
     runtime.block_on(async {
         let listener = TcpListener::bind(args.listen).await.with_context(|| {
             format!("{}: cannot listen there; choose another address by --listen", args.listen)
         })?;
+        let storage = Storage::open(&database).await?;
+        let app = App::new(Vec::new(), PackStore::default(), assets, storage)
+            .await?
+            .with_access(Access { open_preview: true, public_url: None, studio_alone: true })
+            .with_studio_files(files)
+            .with_data_folder(folder.path().to_owned());
         let address = format!("http://{}/studio", reachable(listener.local_addr()?));
         {
             let mut out = std::io::stdout().lock();
@@ -51,11 +61,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
                 writeln!(out, "{}", json!({ "url": address }))?;
             } else {
                 writeln!(out, "studio  {address}")?;
-                writeln!(out, "Nothing leaves the browser. Stop with Ctrl-C.")?;
+                writeln!(out, "Nothing leaves this machine. Stop with Ctrl-C.")?;
             }
             out.flush()?;
         }
-        serve_studio(studio_router(assets, files), listener, stop_signal()).await?;
+        serve(app, listener, stop_signal()).await?;
         Ok(())
     })
 }

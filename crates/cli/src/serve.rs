@@ -20,11 +20,12 @@ use serde_json::json;
 use tokio::net::TcpListener;
 
 use crate::check::check_file;
+use crate::study_file::in_data_folder;
 
 /// Options.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Study files to host
+    /// Study files to host, or ZIP archives of their folders
     #[arg(required = true)]
     studies: Vec<PathBuf>,
     /// Address and port to listen on
@@ -66,6 +67,10 @@ pub struct Args {
     /// `https://cdn.example.org/packs`
     #[arg(long)]
     packs_url: Option<String>,
+    /// Origin of a page that may embed the participants' pages in a frame: `https://survey.example.org`. May be given
+    /// several times; without it none may
+    #[arg(long, value_name = "ORIGIN", value_parser = origin)]
+    allow_embedding: Vec<String>,
     /// Token with which /metrics may be read from elsewhere than this machine; better given by the
     /// variable MIMIQUE_METRICS_TOKEN
     #[arg(long)]
@@ -82,6 +87,22 @@ pub struct Args {
     /// Requests a second from one address in the long run; ten times as many at once
     #[arg(long, default_value_t = Settings::default().requests_per_second)]
     requests_per_second: u32,
+}
+
+/// Scheme, host and port of a page, nothing behind them.
+fn origin(text: &str) -> Result<String, String> {
+    let host = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
+    let is_host = |host: &str| {
+        let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-.:[]".contains(&byte);
+        !host.is_empty() && host.bytes().all(plain)
+    };
+    match host {
+        Some(host) if is_host(host) => Ok(text.to_owned()),
+        _ => Err(
+            "no origin of a page; write https://HOST, or https://HOST:PORT, and nothing behind it"
+                .to_owned(),
+        ),
+    }
 }
 
 impl Args {
@@ -111,6 +132,7 @@ impl Args {
             behind_proxy: self.behind_proxy,
             proxies: self.proxy.clone(),
             packs_address,
+            embedding: self.allow_embedding.clone(),
             metrics_token: self.metrics_token.clone().or_else(from_environment),
             most_connections: self.most_connections,
             connections_per_address: self.connections_per_address,
@@ -142,7 +164,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     })?;
     let packs_folder = args.data_dir.join("packs");
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
-    let studies = load_studies(&args.studies, &packs_folder, stage)?;
+    let files: Vec<PathBuf> = (args.studies.iter())
+        .map(|given| in_data_folder(given, &args.data_dir))
+        .collect::<anyhow::Result<_>>()?;
+    let studies = load_studies(&files, &packs_folder, stage)?;
     let mut packs = PackStore::default();
     for clip in studies.iter().flat_map(|study| study.bundle().clips.values()) {
         for hash in clip.packs() {
@@ -173,7 +198,11 @@ async fn host(
     packs.load_earlier_versions(&storage, &args.data_dir.join("packs")).await?;
     let hosted: Vec<Hosted> = studies.iter().map(Hosted::of).collect();
     let kind = storage.kind();
-    let access = Access { open_preview: args.open_preview, public_url: args.public_url.clone() };
+    let access = Access {
+        open_preview: args.open_preview,
+        public_url: args.public_url.clone(),
+        studio_alone: false,
+    };
     let app = App::new(studies, packs, assets, storage)
         .await?
         .with_access(access)

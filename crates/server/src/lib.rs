@@ -67,4 +67,5 @@ pub use state::hosted_study::{HostedStudy, Stage};
 pub use state::network::{Network, NetworkError};
 pub use state::settings::Settings;
 pub use state::start_error::AppError;
-pub use studio::{StudioFile, StudioFiles, StudioRole, serve_studio, studio_router};
+pub use studio::{StudioFile, StudioFiles, StudioRole};
+pub use uploads::unpack_study;

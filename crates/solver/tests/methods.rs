@@ -377,12 +377,12 @@ fn refusals_name_field_value_and_remedy() {
     );
     assert_eq!(
         say(&|s| s.locked = vec!["jawOpen".into()], Method::Lsts),
-        "locked: no shape 'jawOpen'; use names of bump0, bump1, bump2, bump3, bump4, bump5, \
+        "locked.0: no shape 'jawOpen'; use names of bump0, bump1, bump2, bump3, bump4, bump5, \
          bump6, bump7, bump8"
     );
     assert!(
         say(&|s| s.importance = BTreeMap::from_iter([("X".into(), 1.0)]), Method::Box)
-            .starts_with("importance: no marker 'X'; use names of M00, M01")
+            .starts_with("importance.X: no marker 'X'; use names of M00, M01")
     );
     assert_eq!(
         say(&|s| s.laplacian = Some(LaplacianKind::Umbrella), Method::Lsts),

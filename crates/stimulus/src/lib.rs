@@ -89,8 +89,9 @@ pub use provenance::{Provenance, sha256_of_file};
 pub use segments::{
     Activity, ActivityOptions, BorderRule, Channels, EafAnnotation, EafDocument, EafError,
     EafSegments, EafTier, LeftOut, Literal, SegmentFileError, SuggestError, SuggestOptions,
-    Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, read_labelled_segments,
-    read_segments, stretches, study_segments, suggest, write_segments, write_segments_with,
+    Suggestion, TakeSegment, Timeline, TimelineSegment, bridge, cut, identifier,
+    read_labelled_segments, read_segments, stretches, study_segments, suggest, write_segments,
+    write_segments_with,
 };
 pub use sound::{SoundError, SoundFacts, SoundFormat, read_sound};
 pub use suggest_map::{

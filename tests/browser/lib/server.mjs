@@ -16,10 +16,10 @@ export function mimique(args, options = {}) {
 }
 
 /** A running server: `{url, folder, database, said(), log(), researcher(), stop()}`. */
-export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimique-")), port } = {}) {
+export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimique-")), port, more = [] } = {}) {
   port ??= await freePort();
   const database = `sqlite:${join(folder, "answers.sqlite")}`;
-  const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--open-preview", "--json"];
+  const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--open-preview", "--json", ...more];
   // In development the pages may lie in a folder instead of the binary.
   if (process.env.MIMIQUE_WEB_DIR) args.push("--web-dir", process.env.MIMIQUE_WEB_DIR);
   const child = spawn(binary, args, { cwd: root, stdio: ["ignore", "pipe", "pipe"] });

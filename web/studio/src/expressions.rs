@@ -166,7 +166,7 @@ impl Workspace {
             Some(Take::Markers { recording, .. }) => {
                 Ok((recording.capture.frames(), recording.capture.rate_hz))
             }
-            Some(Take::Weights { name, table }) => {
+            Some(Take::Weights { name, table, .. }) => {
                 let rate = table.rate_hz().ok_or_else(|| Problem::of(name, "no rate"))?;
                 Ok((table.frames.len(), rate))
             }

@@ -25,6 +25,7 @@ mod markers;
 mod method_fields;
 mod picture;
 mod solved;
+mod study;
 mod training;
 mod workspace;
 

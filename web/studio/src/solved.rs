@@ -48,7 +48,9 @@ impl Workspace {
         let face = self.face()?;
         lock_shapes(&mut spec, &face.read.locked);
         let (solved, mut facts) = match (&self.take, spec.method.needs()) {
-            (Some(Take::Weights { name, table }), Needs::Weights) => recorded(face, name, table)?,
+            (Some(Take::Weights { name, table, .. }), Needs::Weights) => {
+                recorded(face, name, table)?
+            }
             (Some(Take::Weights { name, .. }), _) => {
                 let what = "holds weights, no markers; take the method recorded";
                 return Err(Problem::of(name, what));

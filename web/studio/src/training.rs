@@ -7,7 +7,7 @@ use mimique_mocap::{Capture, WeightOptions, WeightsTable, read_weights};
 use mimique_stimulus::{Training, built_in_training};
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Workspace, read_capture};
+use crate::workspace::{Origin, Problem, Workspace, read_capture};
 
 /// Neutral frames of a training take where nobody names others, as in `mimique solve`.
 const NEUTRAL: Range<usize> = 0..60;
@@ -15,7 +15,7 @@ const NEUTRAL: Range<usize> = 0..60;
 /// The two files, each with its name.
 #[derive(Debug, Default)]
 pub(crate) struct TrainingFiles {
-    take: Option<(String, Capture)>,
+    take: Option<(String, Origin, Capture)>,
     weights: Option<(String, WeightsTable)>,
     neutral: Option<Range<usize>>,
     /// Labels of the head markers, of the built-in actor; else those of the take to be solved.
@@ -26,6 +26,12 @@ impl TrainingFiles {
     /// The weights with their name.
     pub fn weights(&self) -> Option<(&String, &WeightsTable)> {
         self.weights.as_ref().map(|(name, table)| (name, table))
+    }
+
+    /// Where the capture comes from, and the names of capture and weights; none where they are not both there.
+    pub fn files(&self) -> Option<(&Origin, [&str; 2])> {
+        let ((take, origin, _), (weights, _)) = (self.take.as_ref()?, self.weights.as_ref()?);
+        Some((origin, [take, weights]))
     }
 }
 
@@ -42,7 +48,8 @@ impl Workspace {
         rate_hz: Option<f64>,
     ) -> Result<Value, Problem> {
         let capture = read_capture(file, bytes, unit, rate_hz)?.capture;
-        self.training.take = Some((file.to_owned(), capture));
+        let origin = Origin::File { unit: unit.map(str::to_owned), rate_hz };
+        self.training.take = Some((file.to_owned(), origin, capture));
         self.training.neutral = None;
         self.training.head = None;
         Ok(self.training_state())
@@ -65,7 +72,7 @@ impl Workspace {
         let learnt_from = built_in_training(actor, NOISE_MM);
         let name = || "built-in actor".to_owned();
         self.training = TrainingFiles {
-            take: Some((name(), learnt_from.capture)),
+            take: Some((name(), Origin::BuiltIn, learnt_from.capture)),
             weights: Some((name(), learnt_from.weights)),
             neutral: learnt_from.neutral,
             head: learnt_from.head,
@@ -79,7 +86,7 @@ impl Workspace {
     /// # Errors
     /// [`Problem`]: no training take yet, or not frames of it.
     pub fn set_training_neutral(&mut self, first: usize, end: usize) -> Result<Value, Problem> {
-        let Some((name, capture)) = &self.training.take else {
+        let Some((name, _, capture)) = &self.training.take else {
             return Err(Problem::of("training", "no take yet; open one first"));
         };
         let frames = capture.frames();
@@ -95,9 +102,9 @@ impl Workspace {
     /// What is there to learn from; `missing` says what is not, null once a regression can learn.
     pub fn training_state(&self) -> Value {
         let TrainingFiles { take, weights, .. } = &self.training;
-        let neutral = take.as_ref().map(|(_, capture)| self.training_neutral(capture));
+        let neutral = take.as_ref().map(|(.., capture)| self.training_neutral(capture));
         json!({
-            "take": take.as_ref().map(|(name, capture)| json!({
+            "take": take.as_ref().map(|(name, _, capture)| json!({
                 "file": name,
                 "markers": capture.labels.len(),
                 "frames": capture.frames(),
@@ -118,7 +125,7 @@ impl Workspace {
             (None, None) => Some("open a range of motion and its weights".to_owned()),
             (None, Some(_)) => Some("open the capture that these weights belong to".to_owned()),
             (Some(_), None) => Some("open the weights that were played in it".to_owned()),
-            (Some((take, capture)), Some((name, table))) => {
+            (Some((take, _, capture)), Some((name, table))) => {
                 let (frames, rows) = (capture.frames(), table.frames.len());
                 (frames != rows).then(|| {
                     format!(
@@ -138,7 +145,7 @@ impl Workspace {
         if let Some(missing) = self.missing_training() {
             return Err(Problem::of("training", missing));
         }
-        let TrainingFiles { take: Some((_, capture)), weights: Some((_, weights)), .. } =
+        let TrainingFiles { take: Some((.., capture)), weights: Some((_, weights)), .. } =
             &self.training
         else {
             return Err(Problem::of("training", "open a range of motion and its weights"));

@@ -14,6 +14,7 @@ use mimique_mocap::{
 use mimique_stimulus::{
     AvatarSkin, GivenGaze, MappedMarker, MarkerMap, MarkerPlace, TakeSegment, built_in_capture,
 };
+use mimique_study::BuiltinAvatar;
 use serde_json::{Value, json};
 
 use crate::exertion::ExertionDesk;
@@ -61,17 +62,32 @@ pub struct Workspace {
 pub(crate) struct Face {
     pub read: ReadAvatar,
     pub skin: AvatarSkin,
+    /// The file's name.
+    pub file: String,
+    /// Whether settings stood beside it.
+    pub has_settings: bool,
+    /// Which person of the built-in head it is.
+    pub built_in: Option<BuiltinAvatar>,
     /// Where the built-in head's markers sit.
     pub sites: Option<MarkerMap>,
+}
+
+/// Where a capture comes from.
+#[derive(Debug, Clone)]
+pub(crate) enum Origin {
+    /// A built-in actor.
+    BuiltIn,
+    /// A file, with what was said of it that it does not say.
+    File { unit: Option<String>, rate_hz: Option<f64> },
 }
 
 /// What is played on it.
 #[derive(Debug)]
 pub(crate) enum Take {
     /// Marker trajectories.
-    Markers { name: String, recording: Recording, head: Vec<String> },
-    /// Weights that were recorded or solved elsewhere.
-    Weights { name: String, table: WeightsTable },
+    Markers { name: String, origin: Origin, recording: Recording, head: Vec<String> },
+    /// Weights that were recorded or solved elsewhere, and the rate where their file does not say one.
+    Weights { name: String, file_rate_hz: Option<f64>, table: WeightsTable },
 }
 
 impl Workspace {
@@ -96,9 +112,10 @@ impl Workspace {
             .transpose()
             .map_err(|e| Problem::of(file, e))?;
         let stem = file.split('.').next().unwrap_or(file);
+        let has_settings = settings.is_some();
         let read =
             read_avatar_bytes(bytes, stem, None, settings).map_err(|e| Problem::of(file, e))?;
-        self.put_avatar(file, read, None)
+        self.put_avatar(file, read, has_settings, None)
     }
 
     /// Takes a person of the built-in head.
@@ -106,6 +123,11 @@ impl Workspace {
     /// # Errors
     /// None for heads that this version builds.
     pub fn built_in_avatar(&mut self, seed: u64, vertices: usize) -> Result<Value, Problem> {
+        let built_in = BuiltinAvatar {
+            seed,
+            vertices: Some(u32::try_from(vertices).unwrap_or(u32::MAX)),
+            actor: None,
+        };
         let spec = HeadSpec { density: Density::nearest(vertices), ..HeadSpec::person(seed) };
         let sites = marker_sites(&spec);
         let face = sites.face_labels().iter().zip(&sites.vertices).map(|(label, &vertex)| {
@@ -118,20 +140,24 @@ impl Workspace {
             locked: Vec::new(),
             notes: Vec::new(),
         };
-        self.put_avatar("built-in head", read, Some(map))
+        self.put_avatar("built-in head", read, false, Some((built_in, map)))
     }
 
     fn put_avatar(
         &mut self,
         file: &str,
         read: ReadAvatar,
-        sites: Option<MarkerMap>,
+        has_settings: bool,
+        built_in: Option<(BuiltinAvatar, MarkerMap)>,
     ) -> Result<Value, Problem> {
         let skin = AvatarSkin::of(&read.avatar).map_err(|e| Problem::of(file, e))?;
         self.solved.clear();
         self.layout.avatar_changed();
         self.map.face.clear();
-        let face = self.face.insert(Face { read, skin, sites });
+        let (built_in, sites) = built_in.unzip();
+        let file_name = file.to_owned();
+        let face =
+            self.face.insert(Face { read, skin, file: file_name, has_settings, built_in, sites });
         let avatar = &face.read.avatar;
         // A box around the skin, metres: what a camera shows whole.
         let ends = |pick: fn(f64, f64) -> f64, from: f64| {
@@ -177,10 +203,12 @@ impl Workspace {
             let shape_names = self.face().map_or(&[][..], |face| &face.read.avatar.shape_names);
             let options = WeightOptions { rate_hz, shape_names, animation: None };
             let table = read_weights(bytes, &options).map_err(|e| Problem::of(file, e))?;
-            return Ok(self.put_take(Take::Weights { name: file.to_owned(), table }));
+            let name = file.to_owned();
+            return Ok(self.put_take(Take::Weights { name, file_rate_hz: rate_hz, table }));
         }
         let recording = read_capture(file, bytes, unit, rate_hz)?;
-        let take = Take::Markers { name: file.to_owned(), recording, head: Vec::new() };
+        let origin = Origin::File { unit: unit.map(str::to_owned), rate_hz };
+        let take = Take::Markers { name: file.to_owned(), origin, recording, head: Vec::new() };
         Ok(self.put_take(take))
     }
 
@@ -203,7 +231,12 @@ impl Workspace {
             events: Vec::new(),
         };
         let name = "built-in actor".to_owned();
-        self.put_take(Take::Markers { name, recording, head: take.head_labels })
+        self.put_take(Take::Markers {
+            name,
+            origin: Origin::BuiltIn,
+            recording,
+            head: take.head_labels,
+        })
     }
 
     fn put_take(&mut self, take: Take) -> Value {
@@ -218,7 +251,7 @@ impl Workspace {
                 json!({"file": name, "kind": "markers", "labels": recording.capture.labels,
                        "facts": facts})
             }
-            Take::Weights { name, table } => json!({
+            Take::Weights { name, table, .. } => json!({
                 "file": name, "kind": "weights", "frames": table.frames.len(),
                 "rate_hz": table.rate_hz(), "columns": table.shape_names,
             }),

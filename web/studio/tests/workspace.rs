@@ -147,14 +147,11 @@ fn the_capture_stands_beside_the_head_as_the_head_does() {
     let vertex = |m: &Value| m["vertex"].as_u64().unwrap() as usize;
     let there = workspace.mirrored_vertex(vertex(left)).unwrap();
     assert_eq!(workspace.mirrored_vertex(there).unwrap(), vertex(left));
-    let mut side = |v: usize| {
-        let found = workspace.place("chin", Some(v), false).unwrap();
-        number(
-            &found["markers"].as_array().unwrap().iter().find(|m| m["label"] == "chin").unwrap()["position"]
-                [0],
-        )
-    };
-    assert!(side(there) * side(vertex(left)) < 0.0 && side(there) * side(vertex(right)) > 0.0);
+    let side = |marker: &Value| number(&marker["position"][0]);
+    let found = workspace.place("brow_inner_right", Some(there), false).unwrap();
+    let moved = found["markers"].as_array().unwrap();
+    let moved = moved.iter().find(|m| m["label"] == "brow_inner_right").unwrap();
+    assert!(side(moved) * side(left) < 0.0 && side(moved) * side(right) > 0.0, "{moved}");
     assert!(workspace.mirrored_vertex(usize::MAX).is_err());
 }
 

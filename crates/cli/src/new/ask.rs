@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use anyhow::bail;
+use mimique_new_study::{designs, instruments};
 
-use super::{Args, Cut, library};
+use super::{Args, Cut};
 use crate::solve::Span;
 
 /// Asks for what the options leave open.
@@ -17,7 +18,7 @@ pub(super) fn ask(
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
     let mut asker = Asker { input, out };
-    let designs = library::designs()?;
+    let designs = designs()?;
     for (number, (name, about)) in designs.iter().enumerate() {
         writeln!(asker.out, "  {}  {name}: {about}", number + 1)?;
     }
@@ -33,7 +34,7 @@ pub(super) fn ask(
         args.languages = asker.list("Languages, as en,fr [en]")?;
     }
     if args.instruments.is_empty() {
-        for own in library::instruments()? {
+        for own in instruments()? {
             writeln!(asker.out, "  {}: {}", own.id, own.name)?;
         }
         args.instruments = asker.list("Instruments, with commas [none]")?;

@@ -2,11 +2,7 @@
 //! simulated and analysed out. What no option says is asked; nothing is written over, and nothing half.
 
 mod ask;
-mod compose;
-mod library;
-mod readme;
 mod stimuli;
-mod text;
 
 use std::io::Write as _;
 use std::ops::Range;
@@ -14,13 +10,15 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{Context as _, anyhow, bail};
+use mimique_new_study::{
+    Design, Instrument, NotComposed, compose, designs, elsewhere, instruments, study_id,
+};
 use mimique_stimulus::TakeSegment;
 use mimique_storage::durable_file;
-use mimique_study::{Severity, json_schema};
-use serde_json::Value;
+use mimique_study::Severity;
+use serde_json::{Value, json};
 
-use self::library::{Design, Instrument};
-use self::stimuli::Stimuli;
+use self::stimuli::StimulusFiles;
 use crate::check::check_opened_file;
 use crate::solve::Span;
 
@@ -114,6 +112,19 @@ struct Wishes {
     reference: bool,
 }
 
+impl Wishes {
+    /// What the study itself is told of them.
+    fn of_study(&self) -> mimique_new_study::Wishes {
+        let method = |name: &String| (name.clone(), json!({ "method": name }));
+        mimique_new_study::Wishes {
+            id: self.id.clone(),
+            title: self.title.clone(),
+            languages: self.languages.clone(),
+            methods: self.methods.iter().map(method).collect(),
+        }
+    }
+}
+
 /// Runs the command.
 pub fn run(mut args: Args, json: bool) -> anyhow::Result<()> {
     if args.list {
@@ -129,26 +140,27 @@ pub fn run(mut args: Args, json: bool) -> anyhow::Result<()> {
         ask::ask(&mut args, &mut std::io::stdin().lock(), &mut std::io::stderr().lock())?;
     }
     let wishes = wishes(args, &folder)?;
-    let design = library::design(&wishes.design)?;
-    let instruments: Vec<Instrument> = (wishes.instruments.iter())
-        .map(|name| library::instrument(name))
-        .collect::<anyhow::Result<_>>()?;
+    let design = Design::named(&wishes.design).map_err(|e| anyhow!("--design: {e}"))?;
+    let instruments: Vec<Instrument> =
+        wishes.instruments.iter().map(|name| instrument(name)).collect::<anyhow::Result<_>>()?;
     let stimuli = match &design {
-        Design::Parts(_) => Some(Stimuli::of(&wishes)?),
+        Design::Parts(_) => Some(StimulusFiles::of(&wishes)?),
         Design::Whole(_) => no_stimuli(&wishes)?,
     };
-    let composed = compose::compose(&wishes, &design, &instruments, stimuli.as_ref())?;
+    let composed =
+        compose(&wishes.of_study(), &design, &instruments, stimuli.as_ref().map(|own| &own.shown))
+            .map_err(|error| match &error {
+                NotComposed::NoSingleClips { instrument } => {
+                    anyhow!("--instrument: {instrument}: {error}")
+                }
+                NotComposed::OneExpression { .. } | NotComposed::NoStimuli => {
+                    anyhow!("--design: {}: {error}", wishes.design)
+                }
+                NotComposed::Library(_) => error.into(),
+            })?;
     let notes = stimuli.as_ref().map_or(&[][..], |own| &own.notes);
-    let mut made = vec![
-        ("study.json".to_owned(), text::written(&composed.study, &composed.comments)),
-        ("README.md".to_owned(), readme::readme(&wishes, &instruments, notes)?),
-        ("schema/study.schema.json".to_owned(), serde_json::to_string_pretty(&json_schema())?),
-    ];
-    for instrument in &instruments {
-        made.extend(instrument.pictures.iter().map(|(name, picture)| {
-            (format!("pictures/{name}"), picture.as_str().unwrap_or_default().to_owned())
-        }));
-    }
+    let mut made =
+        composed.files("`mimique new`", &wishes.design, &wishes.of_study(), &instruments, notes);
     made.extend(stimuli.iter().flat_map(|own| own.made.iter().cloned()));
     let copied = stimuli.as_ref().map_or(&[][..], |own| &own.copied);
     if let Some(parent) = folder.parent().filter(|parent| !parent.as_os_str().is_empty()) {
@@ -194,8 +206,22 @@ fn fill(
     Ok(())
 }
 
+/// The instrument of that name, or of that file.
+fn instrument(name: &str) -> anyhow::Result<Instrument> {
+    let path = Path::new(name);
+    let found = if path.extension().is_some_and(|end| end == "json") {
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| anyhow!("--instrument: {name}: open: {e}; check the path"))?;
+        let id = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Instrument::read(&id, &text)
+    } else {
+        Instrument::named(name)
+    };
+    found.map_err(|e| anyhow!("--instrument: {e}"))
+}
+
 /// A study of the thesis shows what it shows.
-fn no_stimuli(wishes: &Wishes) -> anyhow::Result<Option<Stimuli>> {
+fn no_stimuli(wishes: &Wishes) -> anyhow::Result<Option<StimulusFiles>> {
     if wishes.avatar.is_some() || wishes.capture.is_some() || !wishes.methods.is_empty() {
         bail!(
             "--design: {}: a study of the thesis has its own performances and methods; leave --avatar, --capture and \
@@ -207,13 +233,10 @@ fn no_stimuli(wishes: &Wishes) -> anyhow::Result<Option<Stimuli>> {
 }
 
 fn wishes(args: Args, folder: &Path) -> anyhow::Result<Wishes> {
-    let name = folder.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let plain: String =
-        name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
-    let id = plain.trim_matches('-').to_owned();
-    if id.is_empty() {
-        bail!("{}: no name for a study; use letters and digits", folder.display());
-    }
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let id = study_id(&name).ok_or_else(|| {
+        anyhow!("{}: no name for a study; use letters and digits", folder.display())
+    })?;
     let languages = if args.languages.is_empty() { vec!["en".to_owned()] } else { args.languages };
     Ok(Wishes {
         id,
@@ -238,7 +261,7 @@ fn wishes(args: Args, folder: &Path) -> anyhow::Result<Wishes> {
 fn tell(place: &str, files: &[&String], notes: &[String], json: bool) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     if json {
-        let value = serde_json::json!({ "folder": place, "files": files, "notes": notes });
+        let value = json!({ "folder": place, "files": files, "notes": notes });
         writeln!(out, "{}", serde_json::to_string_pretty(&value)?)?;
         return Ok(());
     }
@@ -255,16 +278,15 @@ fn tell(place: &str, files: &[&String], notes: &[String], json: bool) -> anyhow:
 /// `--list`: what there is to choose from.
 fn list(json: bool) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    let (designs, instruments) = (library::designs()?, library::instruments()?);
-    let elsewhere = library::elsewhere()?;
+    let (designs, instruments, elsewhere) = (designs()?, instruments()?, elsewhere()?);
     if json {
-        let value = serde_json::json!({
-            "designs": designs.iter().map(|(name, about)| serde_json::json!({ "name": name, "about": about })).collect::<Vec<Value>>(),
-            "instruments": instruments.iter().map(|own| serde_json::json!({
+        let value = json!({
+            "designs": designs.iter().map(|(name, about)| json!({ "name": name, "about": about })).collect::<Vec<Value>>(),
+            "instruments": instruments.iter().map(|own| json!({
                 "name": own.id, "about": own.name, "citation": own.citation, "licence": own.licence,
                 "scoring": own.scoring,
             })).collect::<Vec<Value>>(),
-            "elsewhere": elsewhere.iter().map(|own| serde_json::json!({
+            "elsewhere": elsewhere.iter().map(|own| json!({
                 "name": own.id, "about": own.name, "citation": own.citation, "where": own.place, "why": own.why,
             })).collect::<Vec<Value>>(),
         });

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use mimique_mocap::{CaptureFile, ReadOptions};
+use mimique_new_study::Stimuli;
 use mimique_stimulus::{
     AvatarSkin, EafDocument, MarkerMap, TakeSegment, read_segments, sidecar_path, study_segments,
     suggest_map,
 };
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
 
 use super::Wishes;
 
@@ -23,12 +24,10 @@ const EXPRESSIONS: [[&str; 3]; 6] = [
     ["surprise", "Surprise", "Surprise"],
 ];
 
-/// What a study shows.
-pub(super) struct Stimuli {
-    /// `avatars`, `captures` and `segments` of the study file.
-    pub parts: Map<String, Value>,
-    /// The levels of the factor `expression`, with what they are called in English and French.
-    pub expressions: Vec<[String; 3]>,
+/// What a study shows, and its files.
+pub(super) struct StimulusFiles {
+    /// What the study file says of them.
+    pub shown: Stimuli,
     /// Files that are copied into the study's folder, with their names there.
     pub copied: Vec<(PathBuf, String)>,
     /// Files that are written into it: names and texts.
@@ -40,12 +39,11 @@ pub(super) struct Stimuli {
 /// The folder of the files in the study's folder.
 const FOLDER: &str = "stimuli";
 
-impl Stimuli {
+impl StimulusFiles {
     /// What the options ask for.
     pub fn of(wishes: &Wishes) -> anyhow::Result<Self> {
         let mut own = Self {
-            parts: Map::new(),
-            expressions: Vec::new(),
+            shown: Stimuli::default(),
             copied: Vec::new(),
             made: Vec::new(),
             notes: Vec::new(),
@@ -54,7 +52,7 @@ impl Stimuli {
             None => json!({ "builtin": { "seed": 1 } }),
             Some(path) => json!({ "file": own.file(path, wishes.reference)? }),
         };
-        own.parts.insert("avatars".to_owned(), json!({ "head": avatar }));
+        own.shown.parts.insert("avatars".to_owned(), json!({ "head": avatar }));
         match &wishes.capture {
             None => own.built_in(wishes)?,
             Some(capture) => own.recorded(capture, wishes)?,
@@ -86,12 +84,12 @@ impl Stimuli {
         let segments = EXPRESSIONS.map(|[word, ..]| {
             json!({ "id": word, "capture": "actor", "performance": { "expression": word, "intensity": 2 } })
         });
-        self.parts.insert(
+        self.shown.parts.insert(
             "captures".to_owned(),
             json!({ "actor": { "builtin": { "actor": 7 }, "rateHz": 60 } }),
         );
-        self.parts.insert("segments".to_owned(), json!(segments));
-        self.expressions = EXPRESSIONS.map(|words| words.map(str::to_owned)).to_vec();
+        self.shown.parts.insert("segments".to_owned(), json!(segments));
+        self.shown.expressions = EXPRESSIONS.map(|words| words.map(str::to_owned)).to_vec();
         Ok(())
     }
 
@@ -123,11 +121,11 @@ impl Stimuli {
             capture.insert("neutral".to_owned(), json!([neutral.start, neutral.end]));
         }
         let takes = cuts(path, wishes)?;
-        self.parts.insert("captures".to_owned(), json!({ "take": capture }));
-        self.parts.insert("segments".to_owned(), json!(study_segments(&takes, "take")));
+        self.shown.parts.insert("captures".to_owned(), json!({ "take": capture }));
+        self.shown.parts.insert("segments".to_owned(), json!(study_segments(&takes, "take")));
         for take in &takes {
-            if !self.expressions.iter().any(|[word, ..]| *word == take.label) {
-                self.expressions.push([(); 3].map(|()| take.label.clone()));
+            if !self.shown.expressions.iter().any(|[word, ..]| *word == take.label) {
+                self.shown.expressions.push([(); 3].map(|()| take.label.clone()));
             }
         }
         Ok(())
@@ -151,7 +149,7 @@ impl Stimuli {
             .map_err(|e| anyhow!("{}: {e}; give a map by --map", capture.display()))?;
         self.notes.push(format!(
             "{FOLDER}/markers.json: suggested from the capture, {:.1} mm off the skin: look at it in the studio \
-             (mimique preview) before the study runs",
+             (`mimique preview`) before the study runs",
             found.distance_rms_mm
         ));
         self.notes.extend(found.notes.iter().map(|note| format!("{FOLDER}/markers.json: {note}")));

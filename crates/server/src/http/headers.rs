@@ -9,15 +9,25 @@ use axum::response::Response;
 
 use crate::state::settings::Settings;
 
+/// An answer that pages of other origins may embed: its policy says which.
+#[derive(Clone)]
+pub(crate) struct Embeddable;
+
 /// Scripts and styles only from here; nothing inline, nothing from elsewhere but packs, where they
-/// are named, and a program on the participant's machine that the page of a study tells of what it shows.
-pub(crate) fn content_security_policy(packs: Option<&str>, program: Option<&str>) -> String {
+/// are named, and a program on the participant's machine that the page of a study tells of what it shows. `embedding`
+/// are the origins of pages that may embed it.
+pub(crate) fn content_security_policy(
+    packs: Option<&str>,
+    program: Option<&str>,
+    embedding: &[String],
+) -> String {
+    let ancestors = if embedding.is_empty() { "'none'".to_owned() } else { embedding.join(" ") };
     let packs = packs.map(|packs| format!(" {}", origin(packs))).unwrap_or_default();
     let program = program.map(|program| format!(" {program}")).unwrap_or_default();
     format!(
         "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; \
          img-src 'self' data: blob:; connect-src 'self'{packs}{program}; worker-src 'self'; \
-         media-src 'self' blob:{packs}; form-action 'self'; frame-ancestors 'none'; \
+         media-src 'self' blob:{packs}; form-action 'self'; frame-ancestors {ancestors}; \
          base-uri 'none'; object-src 'none'"
     )
 }
@@ -36,7 +46,7 @@ pub(super) struct Headers(Arc<[(HeaderName, HeaderValue)]>);
 
 impl Headers {
     pub fn of(settings: &Settings, encrypted: bool) -> Self {
-        let policy = content_security_policy(settings.packs_address.as_deref(), None);
+        let policy = content_security_policy(settings.packs_address.as_deref(), None, &[]);
         let fixed = HeaderValue::from_static;
         let mut headers = vec![
             // An address with characters that no header takes is left out by falling back.
@@ -61,19 +71,19 @@ impl Headers {
     }
 }
 
-/// The headers of a server with default settings.
-pub(crate) async fn security_headers(request: Request, next: Next) -> Response {
-    settled_headers(State(Headers::of(&Settings::default(), false)), request, next).await
-}
-
 pub(super) async fn settled_headers(
     State(Headers(fixed)): State<Headers>,
     request: Request,
     next: Next,
 ) -> Response {
     let mut response = next.run(request).await;
+    // Browsers that know the policy's ancestors pass over the older header, others would not embed it.
+    let embeddable = response.extensions().get::<Embeddable>().is_some();
     let headers = response.headers_mut();
     for (name, value) in fixed.iter() {
+        if embeddable && name == header::X_FRAME_OPTIONS {
+            continue;
+        }
         // A page that needs another policy has said so.
         headers.entry(name.clone()).or_insert(value.clone());
     }

@@ -15,7 +15,7 @@ use serde_json::{Map, Value, json};
 use super::statics;
 use crate::export::format::Format;
 use crate::participant::{pairs, panics, sessions, studies};
-use crate::researcher::handlers::studies as researcher;
+use crate::researcher::handlers::{streams, studies as researcher};
 use crate::state::App;
 
 /// Every route of the participants' interface.
@@ -129,6 +129,7 @@ fn describe_downloads(interface: Interface) -> Interface {
             lines, events what is stored as JSON lines, psych-ds a folder in an archive, dictionary \
             what every column means, stimuli a row per clip with what was measured of it, study the study file",
         words: &[("format", &words)],
+        queries: &[],
         flags: &[
             ("with_identifiers", "Recruitment identifiers stand in columns of their own"),
             (
@@ -146,10 +147,21 @@ fn describe_downloads(interface: Interface) -> Interface {
     let report = Download {
         summary: "The report: report.html, report.zip with everything, or one file of it by its path",
         words: &[("language", &["en", "fr"])],
+        queries: &[],
         flags: &[],
         types: &["text/html; charset=utf-8", "application/zip", "application/octet-stream"],
     };
+    let events = Download {
+        summary: "Server-sent events: each event of the study's sessions within a second after it is stored (`event` its \
+            type, `id` PARTICIPANT.SEQUENCE, `data` JSON with participant, condition, stage, config_hash and the event); \
+            from now on, or from the beginning",
+        words: &[("from", &["now", "beginning"])],
+        queries: &["from"],
+        flags: &[],
+        types: &["text/event-stream"],
+    };
     interface
+        .download(&format!("{STUDY}/events"), &events, get(streams::events))
         .download(&format!("{STUDY}/export/{{format}}"), &export, get(researcher::export))
         .download(
             &format!("{STUDY}/report/{{language}}/{{*name}}"),
@@ -161,8 +173,10 @@ fn describe_downloads(interface: Interface) -> Interface {
 /// A download in words.
 struct Download<'a> {
     summary: &'a str,
-    /// What stands in the address, where it is one of some words.
+    /// What stands in the address or in a query, where it is one of some words.
     words: &'a [(&'a str, &'a [&'a str])],
+    /// Queries of such words.
+    queries: &'a [&'a str],
     /// Queries that are `true` or `false`.
     flags: &'a [(&'a str, &'a str)],
     types: &'a [&'a str],
@@ -218,7 +232,7 @@ impl Interface {
     fn download(self, path: &str, download: &Download<'_>, route: MethodRouter<App>) -> Self {
         let content: Map<String, Value> =
             download.types.iter().map(|kind| ((*kind).to_owned(), json!({}))).collect();
-        let mut operation = operation(path, &[], download.summary, content.into());
+        let mut operation = operation(path, download.queries, download.summary, content.into());
         operation["security"] = json!([{"token": []}]);
         if let Some(parameters) = operation["parameters"].as_array_mut() {
             for parameter in &mut *parameters {

@@ -25,8 +25,9 @@ use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
 use crate::participant::{pages, previews, withdrawal};
-use crate::researcher::handlers::{accounts, people, studies};
+use crate::researcher::handlers::{accounts, people, streams, studies};
 use crate::state::App;
+use crate::studio;
 use crate::uploads::handlers as uploads;
 
 /// A request's body in bytes at most: some twenty trials with their frame logs.
@@ -46,6 +47,10 @@ pub fn router(app: App) -> Router {
         .route("/s/{study}/", get(pages::participant))
         .route("/s/{study}/withdraw", get(withdrawal::page).post(withdrawal::redeem))
         .route("/assets/{hash}/{*name}", get(statics::asset))
+        .route("/studio/files/{role}", get(studio::file))
+        // A study counts its own bytes while it is written.
+        .route(studio::STUDY, post(studio::study).layer(DefaultBodyLimit::disable()))
+        .route(&format!("{}/{{study}}", studio::STUDY), get(studio::preparing))
         .merge(researchers(&app))
         .route("/healthz", get(|| async { "ok\n" }))
         .route("/readyz", get(pages::ready))
@@ -75,10 +80,10 @@ fn researchers(app: &App) -> Router<App> {
         .route("/preview/{study}", get(pages::preview))
         .route("/preview/{study}/comparison", get(previews::comparison))
         .route("/preview/{study}/exertion", get(previews::exertion))
-        .route("/studio", get(pages::studio))
+        .route("/studio", get(studio::show))
         .route("/researcher", get(studies::home))
         .route(STUDY, get(studies::study))
-        .route(&format!("{STUDY}/live"), get(studies::live))
+        .route(&format!("{STUDY}/live"), get(streams::live))
         .route(&format!("{STUDY}/withdraw"), post(studies::withdraw))
         .route(&format!("{STUDY}/keep"), post(studies::keep_overdue))
         .route("/researcher/clock", post(studies::confirm_clock))
@@ -117,7 +122,11 @@ async fn refuse_nul(request: Request, next: Next) -> Response {
 }
 
 async fn time_limit(request: Request, next: Next) -> Response {
-    let longest = if request.uri().path() == UPLOAD { LONGEST_UPLOAD } else { LONGEST_REQUEST };
+    let longest = if [UPLOAD, studio::STUDY].contains(&request.uri().path()) {
+        LONGEST_UPLOAD
+    } else {
+        LONGEST_REQUEST
+    };
     match tokio::time::timeout(longest, next.run(request)).await {
         Ok(response) => response,
         Err(_) => Error::Timeout.into_response(),

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use axum::extract::{Path, Query, RawQuery, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
-use axum::response::{Html, IntoResponse, Response};
+use axum::response::{Html, IntoResponse, Redirect, Response};
 use maud::{DOCTYPE, html};
 use mimique_storage::{Role, StorageError};
 use serde::Deserialize;
@@ -13,14 +13,16 @@ use serde::Deserialize;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::http::headers::content_security_policy;
+use crate::http::headers::{Embeddable, content_security_policy};
 use crate::http::language::accepted;
 use crate::state::App;
-use crate::studio::page::{StudioFiles, studio_page};
 use mimique_study::Multilingual as _;
 
 /// The list of studies, for those who may know it.
-pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<String> {
+pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Response {
+    if app.access.studio_alone {
+        return Redirect::temporary("/studio").into_response();
+    }
     let assets = app.assets.prefix();
     // Which studies there are is for those who were told.
     let who = may_look(&app, &headers).await;
@@ -64,7 +66,7 @@ pub(crate) async fn index(State(app): State<App>, headers: HeaderMap) -> Html<St
             }
         }
     };
-    Html(page.into_string())
+    Html(page.into_string()).into_response()
 }
 
 /// The page's addresses are relative to the slash; what recruitment appended goes along.
@@ -93,12 +95,21 @@ pub(crate) async fn participant(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     let asked = asked.lang.as_deref();
-    let mut page = from_template(&app, "participant/index.html", &study, asked, &headers)?;
-    if let Some(triggers) = app.study(&study)?.study().triggers {
+    let page = from_template(&app, "participant/index.html", &study, asked, &headers)?;
+    let triggers = app.study(&study)?.study().triggers.as_ref().map(|own| own.origin());
+    let embedding = &app.settings.embedding;
+    let mut page = match embedding.is_empty() {
+        true => answered(page),
+        false => answered(embedded(&app, &study, &page)),
+    };
+    if triggers.is_some() || !embedding.is_empty() {
         let packs = app.settings.packs_address.as_deref();
-        let policy = content_security_policy(packs, Some(&triggers.origin()));
+        let policy = content_security_policy(packs, triggers.as_deref(), embedding);
         let policy = HeaderValue::from_str(&policy).map_err(Error::internal)?;
         page.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    if !embedding.is_empty() {
+        page.extensions_mut().insert(Embeddable);
     }
     Ok(page)
 }
@@ -109,7 +120,7 @@ pub(crate) async fn preview(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     may_preview(&app, &study, &headers).await?;
-    from_template(&app, "researcher/preview.html", &study, None, &headers)
+    from_template(&app, "researcher/preview.html", &study, None, &headers).map(answered)
 }
 
 /// Lets those in who may see a study's stimuli.
@@ -118,12 +129,6 @@ pub(super) async fn may_preview(app: &App, study: &str, headers: &HeaderMap) -> 
         Some(who) => who.needs_in(study, Role::Viewer),
         None => Ok(()),
     }
-}
-
-/// The studio: everything in it happens in the browser.
-pub(crate) async fn studio(State(app): State<App>, headers: HeaderMap) -> Result<Response, Error> {
-    may_look(&app, &headers).await?;
-    studio_page(&app.assets, &StudioFiles::new(), &headers)
 }
 
 /// Lets researchers see what participants should not, or everybody (none) where the server is told so.
@@ -164,7 +169,7 @@ fn from_template(
     study: &str,
     asked: Option<&str>,
     headers: &HeaderMap,
-) -> Result<Response, Error> {
+) -> Result<String, Error> {
     let study = app.study(study)?;
     let language = study.study().language_among(asked.into_iter().chain(accepted(headers)));
     let values = [
@@ -176,7 +181,19 @@ fn from_template(
     ];
     let values: Vec<(&str, &str)> = values.iter().map(|(name, text)| (*name, &**text)).collect();
     let page = app.assets.participant_page(name, &values, study.study(), language);
-    let page = page.ok_or(Error::NotFound)?;
+    page.ok_or(Error::NotFound)
+}
+
+fn answered(page: String) -> Response {
     let kept = [(header::CACHE_CONTROL, "no-cache"), (header::VARY, "accept-language")];
-    Ok((kept, Html(page)).into_response())
+    (kept, Html(page)).into_response()
+}
+
+/// The page with what tells the page that embeds it where it stands.
+fn embedded(app: &App, study: &str, page: &str) -> String {
+    let script = html! {
+        meta name="mimique-embedding" data-study=(study) data-origins=(app.settings.embedding.join(" "));
+        script type="module" src={ (app.assets.prefix()) "/participant/embedded.js" } {}
+    };
+    page.replacen("</head>", &format!("{}</head>", script.into_string()), 1)
 }

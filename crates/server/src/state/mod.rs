@@ -35,6 +35,7 @@ use crate::files::packs::PackStore;
 use crate::researcher::dashboard::kept::Sums;
 use crate::researcher::dashboard::pulse::Pulse;
 use crate::researcher::reports::Reports;
+use crate::studio::StudioFiles;
 use crate::{clock, secret};
 
 /// What every request can reach; cheap to clone.
@@ -64,6 +65,8 @@ pub struct App {
     pub(crate) access: Arc<Access>,
     pub(crate) pulse: Pulse,
     pub(crate) reports: Arc<Reports>,
+    /// What the studio opens by itself.
+    pub(crate) studio_files: Arc<StudioFiles>,
     /// Where uploaded studies and their packs lie.
     pub(crate) data_folder: Option<Arc<Path>>,
     /// Version and stage of each uploaded study as it is hosted.
@@ -109,6 +112,7 @@ impl App {
             access: Arc::default(),
             pulse: Pulse::new(storage.clone()),
             reports: Arc::default(),
+            studio_files: Arc::default(),
             data_folder: None,
             uploaded: Arc::default(),
             token_key: key(&storage, "tokens").await?,
@@ -120,6 +124,12 @@ impl App {
     /// The same server, reached and open as said.
     pub fn with_access(mut self, access: Access) -> Self {
         self.access = Arc::new(access);
+        self
+    }
+
+    /// The same server, whose studio opens these files by itself.
+    pub fn with_studio_files(mut self, files: StudioFiles) -> Self {
+        self.studio_files = Arc::new(files);
         self
     }
 

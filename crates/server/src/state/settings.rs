@@ -18,6 +18,8 @@ pub struct Settings {
     pub proxies: Vec<Network>,
     /// Where browsers fetch packs instead of from here: `https://cdn.example.org/packs`.
     pub packs_address: Option<String>,
+    /// Origins of pages that may embed the participants' pages, such as `https://survey.example`.
+    pub embedding: Vec<String>,
     /// Who gives this as `Authorization: Bearer …` may read `/metrics` from elsewhere than the
     /// machine itself.
     pub metrics_token: Option<String>,
@@ -46,6 +48,7 @@ impl Default for Settings {
             behind_proxy: false,
             proxies: Vec::new(),
             packs_address: None,
+            embedding: Vec::new(),
             metrics_token: None,
             most_connections: 20_000,
             connections_per_address: 1000,

@@ -7,8 +7,8 @@ use axum::http::{HeaderMap, header};
 use axum::response::{Html, IntoResponse, Response};
 
 use crate::error::Error;
-use crate::files::assets::Assets;
 use crate::http::language::language_of;
+use crate::state::App;
 
 /// What a file is to the studio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,21 +46,18 @@ pub struct StudioFile {
 /// The files by what they are.
 pub type StudioFiles = BTreeMap<StudioRole, StudioFile>;
 
-/// The studio's page in the language that `headers` ask for; `files` are what it opens by itself.
-pub(crate) fn studio_page(
-    assets: &Assets,
-    files: &StudioFiles,
-    headers: &HeaderMap,
-) -> Result<Response, Error> {
-    let names: BTreeMap<&str, &str> =
-        files.iter().map(|(role, file)| (role.word(), file.name.as_str())).collect();
+/// The studio's page in the language that `headers` ask for; `token` is what it sends along with a study.
+pub(super) fn studio_page(app: &App, token: &str, headers: &HeaderMap) -> Result<Response, Error> {
+    let named = |(role, file): (&StudioRole, &StudioFile)| (role.word(), file.name.clone());
+    let names: BTreeMap<&str, String> = app.studio_files.iter().map(named).collect();
     let names = serde_json::to_string(&names).unwrap_or_default();
-    let prefix = assets.prefix();
+    let prefix = app.assets.prefix();
     let values = [
         ("assets", prefix.as_str()),
         ("files", names.as_str()),
         ("language", language_of(headers).code()),
+        ("token", token),
     ];
-    let page = assets.page("studio/studio.html", &values).ok_or(Error::NotFound)?;
+    let page = app.assets.page("studio/studio.html", &values).ok_or(Error::NotFound)?;
     Ok(([(header::CACHE_CONTROL, "no-cache")], Html(page)).into_response())
 }

@@ -58,7 +58,7 @@ pub(crate) async fn upload(State(app): State<App>, request: Request) -> Result<R
                     incoming.add(&chunk).await?;
                 }
                 let arrived = incoming.finish().await?;
-                return answer(&app, &who, uploads::take(&app, &who, arrived).await);
+                return answer(&app, &who, uploads::take(&app, Some(&who), arrived).await);
             }
             _ => {}
         }

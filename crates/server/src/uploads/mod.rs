@@ -12,6 +12,7 @@ mod pages;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use mimique_analysis::Language;
 use mimique_stimulus::{Places, Progress};
 use mimique_storage::{Role, UploadedStudy, durable_file};
 use mimique_study::{CheckedStudy, Issue};
@@ -109,7 +110,12 @@ pub(crate) enum Taken {
 }
 
 /// Unpacks and checks what has arrived; if it has no errors, preparing it begins.
-pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Result<Taken, Error> {
+/// Nobody is known where the studio stands alone.
+pub(crate) async fn take(
+    app: &App,
+    who: Option<&Researcher>,
+    arrived: Arrived,
+) -> Result<Taken, Error> {
     let place = uploads_folder(app)?.join(&arrived.hash);
     let hash = arrived.hash.clone();
     let beside = place.clone();
@@ -125,7 +131,7 @@ pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Resul
     let (checked, fresh, inside) = done.map_err(Error::internal)??;
     let Some(study) = checked.study.clone() else { return Ok(Taken::Refused(checked.issues)) };
     let study_id = study.study().id.clone();
-    if who.role_in(&study_id) < Role::Owner {
+    if who.is_some_and(|who| who.role_in(&study_id) < Role::Owner) {
         return Err(Error::NotAllowed);
     }
     if app.study(&study_id).is_ok() && !is_uploaded(app, &study_id).await? {
@@ -143,7 +149,9 @@ pub(crate) async fn take(app: &App, who: &Researcher, arrived: Arrived) -> Resul
         return Err(error.into());
     }
     let study_file = place.join(inside);
-    audit(app, who, "upload a study", &study_id, &study.config_hash()[..12]).await?;
+    if let Some(who) = who {
+        audit(app, who, "upload a study", &study_id, &study.config_hash()[..12]).await?;
+    }
     tokio::spawn(host(app.clone(), study_file, study, hash, preparation));
     Ok(Taken::Accepted { study_id })
 }
@@ -341,6 +349,14 @@ impl App {
         }
         Ok(())
     }
+}
+
+/// Unpacks a ZIP archive of a study into an empty folder; gives its study file.
+///
+/// # Errors
+/// The archive is damaged, leads out of the folder or holds no study file; in words.
+pub fn unpack_study(archive: &Path, folder: &Path) -> Result<PathBuf, String> {
+    unpack(archive, folder).map_err(|error| error.sentence(Language::English))
 }
 
 fn uploads_folder(app: &App) -> Result<PathBuf, Error> {

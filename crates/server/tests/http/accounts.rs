@@ -99,7 +99,7 @@ pub async fn logging_in_begins_a_new_session(server: &TestServer) {
 }
 
 pub async fn behind_tls_cookies_are_secure(server: &TestServer) {
-    let access = Access { public_url: Some("https://faces.example".into()), open_preview: false };
+    let access = Access { public_url: Some("https://faces.example".into()), ..Access::default() };
     let secure = router(server.app.clone().with_access(access));
     let server = server.with_router(secure);
     let link = server.app.first_owner_link().await.unwrap().unwrap();
@@ -430,7 +430,7 @@ pub async fn what_is_hosted_is_for_researchers(server: &TestServer) {
     // The page of a participant needs what it needs.
     assert_eq!(server.get("/s/faces/").await.status, StatusCode::OK);
     assert_eq!(server.get("/api/studies/faces").await.status, StatusCode::OK);
-    let access = Access { open_preview: true, public_url: None };
+    let access = Access { open_preview: true, ..Access::default() };
     let open = server.with_router(router(server.app.clone().with_access(access)));
     assert_eq!(open.get("/api/studies").await.status, StatusCode::OK);
     assert_eq!(open.get("/preview/faces").await.status, StatusCode::OK);

@@ -1,6 +1,7 @@
 //! Pages, assets and packs: their headers and forms.
 
 use axum::http::{StatusCode, header};
+use mimique_server::Settings;
 use mimique_session::wire::{Bundle, StudySummary};
 
 use crate::client::TestServer;
@@ -28,6 +29,24 @@ pub async fn pages_carry_a_strict_policy(server: &TestServer) {
     let answer = server.get("/s/faces?PROLIFIC_PID=7&x=%20").await;
     assert_eq!(answer.status, StatusCode::PERMANENT_REDIRECT);
     assert_eq!(answer.header(header::LOCATION), "/s/faces/?PROLIFIC_PID=7&x=%20");
+}
+
+pub async fn only_pages_that_are_named_may_embed_a_study(server: &TestServer) {
+    let origin = "https://survey.example";
+    let settings = Settings { embedding: vec![origin.to_owned()], ..Settings::default() };
+    let server = server.with_settings(settings);
+    let answer = server.get("/s/faces/").await;
+    let policy = answer.header(header::CONTENT_SECURITY_POLICY);
+    assert!(policy.contains(&format!("frame-ancestors {origin};")), "{policy}");
+    assert!(!answer.headers.contains_key(header::X_FRAME_OPTIONS));
+    let told = format!("data-study=\"faces\" data-origins=\"{origin}\"");
+    assert!(answer.text().contains(&told), "{}", answer.text());
+    // Nothing else of the server may be embedded.
+    for path in ["/", "/s/faces/withdraw", "/researcher/login"] {
+        let answer = server.get(path).await;
+        assert!(answer.header(header::CONTENT_SECURITY_POLICY).contains("frame-ancestors 'none'"));
+        assert_eq!(answer.header(header::X_FRAME_OPTIONS), "DENY", "{path}");
+    }
 }
 
 pub async fn assets_and_packs_are_kept_for_ever(server: &TestServer) {

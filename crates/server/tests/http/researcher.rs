@@ -82,21 +82,59 @@ pub async fn a_change_is_told_at_once(server: &TestServer) {
     assert_eq!(response.status(), StatusCode::OK);
     assert_eq!(response.headers()[header::CONTENT_TYPE], "text/event-stream");
     let mut lines = response.into_body().into_data_stream();
-    let next = async |lines: &mut axum::body::BodyDataStream| {
-        let chunk = tokio::time::timeout(Duration::from_secs(5), lines.next()).await;
-        let chunk = chunk.expect("a line within five seconds").unwrap().unwrap();
-        String::from_utf8_lossy(&chunk).into_owned()
-    };
-    let first = next(&mut lines).await;
+    let first = piece(&mut lines).await;
     assert!(first.contains("event: changed"), "{first}");
     let started = server.start(1).await;
-    let second = next(&mut lines).await;
+    let second = piece(&mut lines).await;
     assert!(second.contains("event: changed") && second != first, "{second}");
     server.stored(&started.session, &events(0..1)).await;
-    let third = next(&mut lines).await;
+    let third = piece(&mut lines).await;
     assert!(third != second, "{third}");
     // Who is not logged in hears nothing.
     let nobody = server.get("/researcher/studies/faces/live").await;
+    nobody.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+}
+
+/// What a stream sends, a piece after the other.
+async fn piece(lines: &mut axum::body::BodyDataStream) -> String {
+    let chunk = tokio::time::timeout(Duration::from_secs(5), lines.next()).await;
+    let chunk = chunk.expect("a line within five seconds").unwrap().unwrap();
+    String::from_utf8_lossy(&chunk).into_owned()
+}
+
+pub async fn stored_events_are_told_to_who_may_export(server: &TestServer) {
+    let owner = owner(server).await;
+    let started = server.start(1).await;
+    server.stored(&started.session, &events(0..2)).await;
+    let listen = async |query: &str| {
+        let request = Request::get(format!("/researcher/studies/faces/events{query}"))
+            .header(header::HOST, HOST)
+            .header(header::COOKIE, owner.cookie())
+            .body(Body::empty())
+            .unwrap();
+        let response = server.stream(request).await;
+        assert_eq!(response.status(), StatusCode::OK);
+        assert_eq!(response.headers()[header::CONTENT_TYPE], "text/event-stream");
+        response.into_body().into_data_stream()
+    };
+    let mut all = listen("?from=beginning").await;
+    let first = piece(&mut all).await;
+    assert!(first.contains("id: 1.0") && first.contains("\"participant\":1"), "{first}");
+    let second = piece(&mut all).await;
+    assert!(second.contains("id: 1.1"), "{second}");
+    // From now on: nothing of what was there, each new event once, in order.
+    let mut fresh = listen("").await;
+    let told = tokio::time::timeout(Duration::from_millis(1500), fresh.next()).await;
+    assert!(told.is_err(), "{told:?}");
+    server.stored(&started.session, &events(2..4)).await;
+    for lines in [&mut all, &mut fresh] {
+        for id in ["id: 1.2", "id: 1.3"] {
+            let line = piece(lines).await;
+            assert!(line.contains(id), "{line}");
+            assert!(line.contains("\"sequence\":") && line.contains("event: "), "{line}");
+        }
+    }
+    let nobody = server.get("/researcher/studies/faces/events").await;
     nobody.refused(StatusCode::UNAUTHORIZED, "log-in-first");
 }
 

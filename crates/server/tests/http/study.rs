@@ -79,7 +79,11 @@ pub fn assets(folder: &Path) -> Assets {
             "participant/index.html",
             "<!doctype html><html lang=\"{{lang}}\"><title>{{title}}</title>\
              <meta content=\"packs={{packs}}\">\
-             <script src=\"{{assets}}/app.js\"></script>",
+             <script src=\"{{assets}}/app.js\"></script></head>",
+        ),
+        (
+            "studio/studio.html",
+            "<!doctype html><body data-files=\"{{files}}\" data-token=\"{{token}}\">",
         ),
         ("researcher/preview.html", "<!doctype html><p>{{assets}}</p>"),
         ("style/style.css", &"p { color: black }\n".repeat(100)),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use axum::body::Body;
 use axum::http::{Request, StatusCode, header};
-use mimique_server::router;
+use mimique_server::{Access, StudioFile, StudioFiles, StudioRole, router};
 use mimique_session::wire::SessionStarted;
 use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
@@ -82,6 +82,99 @@ async fn prepared(server: &TestServer, browser: &mut Browser, id: &str) -> Strin
         tokio::time::sleep(Duration::from_millis(100)).await;
     }
     panic!("the study is not prepared within a minute");
+}
+
+/// A study sent by the studio.
+async fn from_studio(
+    server: &TestServer,
+    browser: Option<&Browser>,
+    token: &str,
+    origin: &str,
+    archive: &[u8],
+) -> Answer {
+    let mut request = Request::post("/studio/study")
+        .header(header::HOST, HOST)
+        .header(header::ORIGIN, origin)
+        .header("x-mimique-form", token);
+    if let Some(browser) = browser {
+        request = request.header(header::COOKIE, browser.cookie());
+    }
+    server.send(request.body(Body::from(archive.to_vec())).unwrap()).await
+}
+
+pub async fn a_study_of_the_studio_is_hosted_for_its_preview(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let mut owner = owner(&server).await;
+    let page = owner.open(&server, "/studio").await.text();
+    assert!(page.contains(&format!("data-token=\"{}\"", owner.csrf)), "{page}");
+    let mut file = whole_study("of-the-studio");
+    let archive = packed(&[("mine/study.json", file.to_string().as_bytes())]);
+    // Nobody, a page of another site, a page that is not the studio: none of them.
+    let csrf = owner.csrf.clone();
+    for (browser, token, origin) in [
+        (None, csrf.as_str(), ORIGIN),
+        (Some(&owner), csrf.as_str(), "https://elsewhere.example"),
+        (Some(&owner), "", ORIGIN),
+        (Some(&owner), "alone", ORIGIN),
+    ] {
+        let answer = from_studio(&server, browser, token, origin, &archive).await;
+        assert!(answer.status.is_client_error(), "{token} {origin}: {}", answer.text());
+    }
+    let answer = from_studio(&server, Some(&owner), &csrf, ORIGIN, &archive).await;
+    assert_eq!(answer.status, StatusCode::ACCEPTED, "{}", answer.text());
+    assert_eq!(answer.json::<Value>(), json!({ "study": "of-the-studio" }));
+    let page = prepared(&server, &mut owner, "of-the-studio").await;
+    assert!(page.contains("hosted as a pilot"), "{page}");
+    let told = owner.open(&server, "/studio/study/of-the-studio").await;
+    assert_eq!(told.json::<Value>()["state"], "ready", "{}", told.text());
+    assert_eq!(owner.open(&server, "/preview/of-the-studio").await.status, StatusCode::OK);
+    assert_eq!(
+        server.get("/studio/study/of-the-studio").await.status,
+        StatusCode::UNAUTHORIZED,
+        "how far it is, is for those who may know"
+    );
+    // What is wrong with a study is told with its place.
+    file["questions"] = json!(7);
+    let broken = packed(&[("study.json", file.to_string().as_bytes())]);
+    let answer = from_studio(&server, Some(&owner), &csrf, ORIGIN, &broken).await;
+    assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{}", answer.text());
+    let told: Value = answer.json();
+    assert_eq!(told["issues"][0]["place"], "/questions", "{told}");
+}
+
+pub async fn the_studio_alone_hosts_what_it_makes(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let access = Access { open_preview: true, studio_alone: true, ..Access::default() };
+    let file = StudioFile { name: "head.glb".to_owned(), bytes: b"glTF".as_slice().into() };
+    let app = (server.app.clone())
+        .with_data_folder(folder.path().to_owned())
+        .with_access(access)
+        .with_studio_files(StudioFiles::from([(StudioRole::Avatar, file)]));
+    let mut server = server.with_router(router(app.clone()));
+    server.app = app;
+    let first = server.get("/").await;
+    assert_eq!(first.header(header::LOCATION), "/studio");
+    let page = server.get("/studio").await.text();
+    assert!(page.contains("data-token=\"alone\"") && page.contains("head.glb"), "{page}");
+    assert_eq!(server.get("/studio/files/avatar").await.text(), "glTF");
+    assert_eq!(server.get("/studio/files/take").await.status, StatusCode::NOT_FOUND);
+    let file = whole_study("made-alone").to_string();
+    let archive = packed(&[("study.json", file.as_bytes())]);
+    let elsewhere = "https://elsewhere.example";
+    let answer = from_studio(&server, None, "alone", elsewhere, &archive).await;
+    assert_eq!(answer.status, StatusCode::FORBIDDEN, "{}", answer.text());
+    let answer = from_studio(&server, None, "alone", ORIGIN, &archive).await;
+    assert_eq!(answer.status, StatusCode::ACCEPTED, "{}", answer.text());
+    for _ in 0..600 {
+        let told: Value = server.get("/studio/study/made-alone").await.json();
+        if told["state"] != "under" {
+            assert_eq!(told["state"], "ready", "{told}");
+            break;
+        }
+        tokio::time::sleep(Duration::from_millis(100)).await;
+    }
+    assert_eq!(server.get("/preview/made-alone").await.status, StatusCode::OK);
 }
 
 pub async fn an_uploaded_study_is_hosted_as_a_pilot(server: &TestServer) {

@@ -29,7 +29,7 @@ pub use csv::{
 pub use eaf::{EafAnnotation, EafDocument, EafError, EafTier};
 pub use eaf_write::{EafSegments, LeftOut};
 pub use literal::Literal;
-pub use study::study_segments;
+pub use study::{identifier, study_segments};
 pub use suggest::{SuggestError, SuggestOptions, Suggestion, Timeline, TimelineSegment, suggest};
 
 /// One expression of a take.

@@ -34,8 +34,9 @@ pub fn study_segments(segments: &[TakeSegment], capture: &str) -> Vec<Segment> {
     segments.collect()
 }
 
-/// Letters, digits, `_` and `-` of a label; accents go, anything else becomes one `-`.
-fn identifier(label: &str) -> String {
+/// What an identifier of a study file can hold of a label: letters, digits, `_` and `-`; accents go, anything else
+/// becomes one `-`.
+pub fn identifier(label: &str) -> String {
     let mut id = String::with_capacity(label.len());
     for c in label.chars() {
         match plain(c) {

@@ -72,7 +72,7 @@ impl Workspace {
     /// open, else none.
     fn layout_takes(&self) -> Result<Vec<Take>, Problem> {
         let opened = match &self.take {
-            Some(StudioTake::Weights { name, table }) => Some((name, table)),
+            Some(StudioTake::Weights { name, table, .. }) => Some((name, table)),
             _ => None,
         };
         let Some((name, table)) = self.training.weights().or(opened) else { return Ok(Vec::new()) };

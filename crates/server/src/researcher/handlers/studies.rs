@@ -1,21 +1,16 @@
 //! `/researcher` and `/researcher/studies/…`: what happens, who takes part, exclusion, export, report.
 
 use std::collections::BTreeMap;
-use std::convert::Infallible;
-use std::time::Duration;
 
 use axum::extract::{Path, State};
-use axum::http::{HeaderName, HeaderValue, header};
-use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::http::{HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use mimique_analysis::Language;
 use mimique_session::Standing;
 use mimique_storage::{Exclusion, Role, SessionRecord, StorageError};
 use mimique_study::Multilingual as _;
 use serde::Deserialize;
-use tokio::sync::mpsc;
 use tokio_stream::StreamExt as _;
-use tokio_stream::wrappers::ReceiverStream;
 
 use super::inline_styles::report_policy;
 use crate::accounts::audit::{self, audit};
@@ -37,9 +32,6 @@ use crate::retention;
 use crate::state::App;
 use crate::state::hosted_study::HostedStudy;
 use crate::uploads;
-
-/// A stream's right to go on is looked at this often.
-const RECHECK: Duration = Duration::from_secs(15);
 
 pub(crate) async fn home(State(app): State<App>, who: Researcher) -> Result<Response, Error> {
     let uploads: BTreeMap<_, _> = app
@@ -110,51 +102,6 @@ fn visible(
 ) -> Result<std::sync::Arc<HostedStudy>, Error> {
     who.needs_in(id, role)?;
     app.study(id)
-}
-
-/// A line whenever something of the study has changed; the page then fetches what it shows.
-pub(crate) async fn live(
-    State(app): State<App>,
-    Path(id): Path<String>,
-    headers: axum::http::HeaderMap,
-    who: Researcher,
-) -> Result<Response, Error> {
-    let study = visible(&app, &who, &id, Role::Viewer)?.id().to_owned();
-    let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
-    let mut beats = app.pulse.listen();
-    let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
-    tokio::spawn(async move {
-        let _place = place;
-        let mut last = None;
-        loop {
-            let now = beats.borrow_and_update().get(&study).cloned().unwrap_or_default();
-            if last.as_ref() != Some(&now) {
-                let event = Event::default().event("changed").data(&now);
-                if sender.send(Ok(event)).await.is_err() {
-                    break;
-                }
-                last = Some(now);
-            }
-            tokio::select! {
-                changed = beats.changed() => if changed.is_err() { break },
-                // Whoever has logged out meanwhile, or lost the account, sees no more.
-                () = tokio::time::sleep(RECHECK) => {
-                    let now = Researcher::of(&app, &headers).await;
-                    if now.and_then(|who| who.needs_in(&study, Role::Viewer)).is_err() {
-                        break;
-                    }
-                }
-                () = app.pulse.stopped() => break,
-                () = sender.closed() => break,
-            }
-        }
-    });
-    let stream = Sse::new(ReceiverStream::new(receiver));
-    let mut response = stream.keep_alive(KeepAlive::default()).into_response();
-    // Proxies must not gather what is to be seen at once.
-    let name = HeaderName::from_static("x-accel-buffering");
-    response.headers_mut().insert(name, HeaderValue::from_static("no"));
-    Ok(response)
 }
 
 pub(crate) async fn participant(

@@ -1,26 +1,22 @@
 //! The README of a new study's folder: what it is, what to do next, and what its instruments are: citation, licence,
 //! scoring.
 
-use std::fmt::Write as _;
+use crate::Wishes;
+use crate::library::Instrument;
 
-use super::Wishes;
-use super::library::Instrument;
-
-/// The text, in Markdown.
-pub(super) fn readme(
+/// The text, in Markdown; `by` is what wrote the study.
+pub(crate) fn readme(
+    by: &str,
+    design: &str,
     wishes: &Wishes,
     instruments: &[Instrument],
     notes: &[String],
-) -> Result<String, std::fmt::Error> {
+) -> String {
     let mut out = String::new();
     let id = &wishes.id;
-    writeln!(out, "# {id}\n")?;
-    writeln!(
-        out,
-        "A study of avatar faces, written by `mimique new` with the design `{}`. Everything about it stands in\n\
-         `study.json`, which explains itself.\n",
-        wishes.design
-    )?;
+    out.push_str(&format!("# {id}\n\n"));
+    out.push_str(&format!("A study of avatar faces, written by {by} with the design `{design}`. Everything about it stands in\n\
+         `study.json`, which explains itself.\n\n"));
     out.push_str("## Next\n\n```sh\n");
     for (command, what) in [
         (
@@ -37,7 +33,7 @@ pub(super) fn readme(
             "every table and figure",
         ),
     ] {
-        writeln!(out, "# {what}\n{command}")?;
+        out.push_str(&format!("# {what}\n{command}\n"));
     }
     out.push_str("```\n\n");
     out.push_str(
@@ -47,22 +43,25 @@ pub(super) fn readme(
     if !notes.is_empty() {
         out.push_str("\n## To be looked at\n\n");
         for note in notes {
-            writeln!(out, "- {note}")?;
+            out.push_str(&format!("- {note}\n"));
         }
     }
     if !instruments.is_empty() {
         out.push_str("\n## Instruments\n");
     }
     for own in instruments {
-        writeln!(out, "\n### {}\n", own.name)?;
-        writeln!(out, "- Source: {}", own.citation)?;
-        writeln!(out, "- Licence: {}", own.licence)?;
-        writeln!(out, "- Scoring: {}", own.scoring)?;
+        out.push_str(&format!("\n### {}\n\n", own.name));
+        out.push_str(&format!("- Source: {}\n", own.citation));
+        out.push_str(&format!("- Licence: {}\n", own.licence));
+        out.push_str(&format!("- Scoring: {}\n", own.scoring));
         for (language, from) in &own.translations {
             if wishes.languages.contains(language) {
-                writeln!(out, "- Words in `{language}`: {}", from.as_str().unwrap_or_default())?;
+                out.push_str(&format!(
+                    "- Words in `{language}`: {}\n",
+                    from.as_str().unwrap_or_default()
+                ));
             }
         }
     }
-    Ok(out)
+    out
 }

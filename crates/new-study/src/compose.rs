@@ -1,27 +1,121 @@
 //! A study put together: what is wished, the parts of its design, its stimuli and instruments in; the study file as JSON
 //! and the comments of its parts out.
 
-use anyhow::bail;
-use mimique_study::SCHEMA_ADDRESS;
+use mimique_study::{SCHEMA_ADDRESS, json_schema};
 use serde_json::{Map, Value, json};
 
-use super::Wishes;
-use super::library::{Asked, Design, Instrument, Parts, base};
-use super::stimuli::Stimuli;
+use crate::library::{Asked, Design, Instrument, LibraryError, Parts, base};
+use crate::readme::readme;
+use crate::written::written;
+
+/// What is wished of a study, besides its design and its stimuli.
+#[derive(Debug, Clone, Default)]
+pub struct Wishes {
+    /// Its identifier.
+    pub id: String,
+    /// What participants see above it; the design's title where none is given.
+    pub title: Option<String>,
+    /// Codes of the languages, the first being the default.
+    pub languages: Vec<String>,
+    /// The methods that are compared, as a study file has them; the design's where none is given.
+    pub methods: Map<String, Value>,
+}
+
+/// What a study shows.
+#[derive(Debug, Clone, Default)]
+pub struct Stimuli {
+    /// `avatars`, `captures` and `segments` of the study file.
+    pub parts: Map<String, Value>,
+    /// The levels of the factor `expression`, with what they are called in English and French.
+    pub expressions: Vec<[String; 3]>,
+}
 
 /// A study file and what stands above its parts.
-pub(super) struct Composed {
+#[derive(Debug, Clone)]
+pub struct Composed {
+    /// The study.
     pub study: Value,
+    /// What stands above its parts, by JSON pointers.
     pub comments: Map<String, Value>,
 }
 
+impl Composed {
+    /// The file: JSON with comments, its keys in the order in which people read them.
+    pub fn text(&self) -> String {
+        written(&self.study, &self.comments)
+    }
+
+    /// The files of its folder, names and texts: the study file, its schema, a README, pictures of instruments. `by` is
+    /// what wrote it, `notes` what should be looked at.
+    pub fn files(
+        &self,
+        by: &str,
+        design: &str,
+        wishes: &Wishes,
+        instruments: &[Instrument],
+        notes: &[String],
+    ) -> Vec<(String, String)> {
+        let schema = json_schema();
+        let mut files = vec![
+            ("study.json".to_owned(), self.text()),
+            ("README.md".to_owned(), readme(by, design, wishes, instruments, notes)),
+            ("schema/study.schema.json".to_owned(), format!("{schema:#}")),
+        ];
+        for instrument in instruments {
+            files.extend(instrument.pictures.iter().map(|(name, picture)| {
+                (format!("pictures/{name}"), picture.as_str().unwrap_or_default().to_owned())
+            }));
+        }
+        files
+    }
+}
+
+/// The identifier that a name gives a study: lower-case letters and digits, anything else one `-`; none without a
+/// letter or digit of the alphabet's first 26.
+pub fn study_id(name: &str) -> Option<String> {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let id: String = name.chars().map(plain).collect();
+    let id = id.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
+    (!id.is_empty()).then_some(id)
+}
+
+/// Why a study cannot be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum NotComposed {
+    /// The design needs stimuli.
+    #[error("it needs stimuli")]
+    NoStimuli,
+    /// The design asks which expression is shown, and all clips show the same one.
+    #[error(
+        "it asks which expression a clip shows, and all of its clips show one: {expression}; name clips of others, too"
+    )]
+    OneExpression {
+        /// The one.
+        expression: String,
+    },
+    /// An instrument is asked of one clip, and the design has no such trials.
+    #[error(
+        "it is asked of one clip, and the design shows clips side by side; take rate-one or identify-emotion"
+    )]
+    NoSingleClips {
+        /// The instrument.
+        instrument: String,
+    },
+    /// The library is not as it should be.
+    #[error(transparent)]
+    Library(#[from] LibraryError),
+}
+
 /// Puts a study together.
-pub(super) fn compose(
+///
+/// # Errors
+/// [`NotComposed`]: design, stimuli and instruments do not fit.
+pub fn compose(
     wishes: &Wishes,
     design: &Design,
     instruments: &[Instrument],
     stimuli: Option<&Stimuli>,
-) -> anyhow::Result<Composed> {
+) -> Result<Composed, NotComposed> {
     let mut base = base()?;
     let mut comments = comments_of(base.remove("comments"));
     let mut study = match (design, stimuli) {
@@ -30,7 +124,7 @@ pub(super) fn compose(
             of_parts(base, parts, stimuli, wishes)?
         }
         (Design::Whole(study), _) => study.as_object().cloned().unwrap_or_default(),
-        (Design::Parts(_), None) => bail!("--design: {}: it needs stimuli", wishes.design),
+        (Design::Parts(_), None) => return Err(NotComposed::NoStimuli),
     };
     study.insert("$schema".to_owned(), json!(SCHEMA_ADDRESS));
     study.insert("id".to_owned(), json!(wishes.id));
@@ -55,7 +149,7 @@ fn of_parts(
     parts: &Parts,
     own: &Stimuli,
     wishes: &Wishes,
-) -> anyhow::Result<Map<String, Value>> {
+) -> Result<Map<String, Value>, NotComposed> {
     let mut study = base;
     let look = study.remove("look").unwrap_or_default();
     study.insert("studyMetadata".to_owned(), json!({ "title": parts.title, "version": "1.0.0" }));
@@ -72,12 +166,8 @@ fn of_parts(
     if own.expressions.len() < 2 {
         let asks_which = parts.questions.iter().any(|question| question.get("truth").is_some());
         if asks_which {
-            bail!(
-                "--design: {}: it asks which expression a clip shows, and all of its clips show one: {}; name clips of \
-                 others, too",
-                wishes.design,
-                own.expressions.first().map_or("none", |[word, ..]| word)
-            );
+            let expression = own.expressions.first().map_or("none", |[word, ..]| word).to_owned();
+            return Err(NotComposed::OneExpression { expression });
         }
         // One segment follows itself.
         study["sequence"].as_object_mut().map(|sequence| sequence.remove("constraints"));
@@ -87,15 +177,14 @@ fn of_parts(
 
 /// The methods that are compared: those that are named, else the design's.
 fn methods(parts: &Parts, wishes: &Wishes) -> Map<String, Value> {
-    if wishes.methods.is_empty() {
-        return parts.methods.clone();
-    }
-    wishes.methods.iter().map(|name| (name.clone(), json!({ "method": name }))).collect()
+    if wishes.methods.is_empty() { parts.methods.clone() } else { wishes.methods.clone() }
 }
 
 /// The hypotheses, each with the test that goes with so many methods; none about methods where there is one.
 fn hypotheses(parts: &Parts, methods: &Map<String, Value>) -> Vec<Value> {
-    let words: Vec<&Value> = methods.values().map(|method| &method["method"]).collect();
+    // What the analysis calls a method: the name among its factors, else the method itself.
+    let word = |method| Value::pointer(method, "/factors/method").unwrap_or(&method["method"]);
+    let words: Vec<&Value> = methods.values().map(word).collect();
     let of_methods = parts.hypotheses.iter().filter(|_| words.len() > 1).cloned();
     let fitting = of_methods.map(|mut hypothesis| {
         let test = match (hypothesis["test"].as_str(), words.len()) {
@@ -132,7 +221,7 @@ fn options_of_truth(study: &mut Map<String, Value>, own: &Stimuli) {
 fn add_instruments(
     study: &mut Map<String, Value>,
     instruments: &[Instrument],
-) -> anyhow::Result<()> {
+) -> Result<(), NotComposed> {
     let mut pages = Vec::new();
     for instrument in instruments {
         match instrument.asked {
@@ -166,7 +255,10 @@ fn add_instruments(
 }
 
 /// An instrument's questions, asked in every trial of single clips.
-fn ask_of_clips(study: &mut Map<String, Value>, instrument: &Instrument) -> anyhow::Result<()> {
+fn ask_of_clips(
+    study: &mut Map<String, Value>,
+    instrument: &Instrument,
+) -> Result<(), NotComposed> {
     let mut asks = false;
     let components = study.get_mut("components").and_then(Value::as_object_mut);
     for component in components.into_iter().flat_map(|all| all.values_mut()) {
@@ -178,11 +270,7 @@ fn ask_of_clips(study: &mut Map<String, Value>, instrument: &Instrument) -> anyh
         }
     }
     if !asks {
-        bail!(
-            "--instrument: {}: it is asked of one clip, and the design shows clips side by side; take rate-one or \
-             identify-emotion",
-            instrument.id
-        );
+        return Err(NotComposed::NoSingleClips { instrument: instrument.id.clone() });
     }
     if let Some(questions) = study.get_mut("questions").and_then(Value::as_array_mut) {
         questions.extend(instrument.questions.iter().cloned());

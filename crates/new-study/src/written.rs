@@ -75,7 +75,7 @@ const ORDER: [&str; 66] = [
 const LINE: usize = 110;
 
 /// The text of a study; `comments` by JSON pointers, that of the empty one above everything.
-pub(super) fn written(study: &Value, comments: &Map<String, Value>) -> String {
+pub(crate) fn written(study: &Value, comments: &Map<String, Value>) -> String {
     let mut out = String::new();
     comment("", "", comments, &mut out);
     write(study, "", 0, comments, &mut out);

@@ -1,0 +1,200 @@
+//! Streams of server-sent events: that something of a study has changed, for its dashboard; and each event that a
+//! participant's page has stored, for a laboratory's own tools.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::convert::Infallible;
+use std::time::Duration;
+
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use mimique_session::wire::Event as Stored;
+use mimique_storage::{Role, SessionState, StorageError};
+use serde::Deserialize;
+use serde_json::json;
+use tokio::sync::mpsc;
+use tokio_stream::wrappers::ReceiverStream;
+
+use crate::accounts::identity::Researcher;
+use crate::error::Error;
+use crate::http::extract::Asked;
+use crate::researcher::dashboard::session_sums::FORM;
+use crate::state::App;
+
+/// A stream's right to go on is looked at this often.
+const RECHECK: Duration = Duration::from_secs(15);
+
+/// No beat is this one.
+const NEVER: &str = "never";
+
+/// A line whenever something of the study has changed; the page then fetches what it shows.
+pub(crate) async fn live(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    headers: HeaderMap,
+    who: Researcher,
+) -> Result<Response, Error> {
+    stream(app, headers, &who, study, Role::Viewer, Told::Changes { told: NEVER.to_owned() })
+}
+
+/// Where a stream of events begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum From {
+    /// With what is stored from now on.
+    #[default]
+    Now,
+    /// With everything that is stored.
+    Beginning,
+}
+
+#[derive(Deserialize)]
+pub(crate) struct EventsQuery {
+    #[serde(default)]
+    from: From,
+}
+
+/// Each event of a study's sessions, as soon as it is stored (within a second): `event` is its type, `id`
+/// `PARTICIPANT.SEQUENCE`, `data` the participant's number, condition, stage and version of the study with the event.
+pub(crate) async fn events(
+    State(app): State<App>,
+    Path(study): Path<String>,
+    Asked(query): Asked<EventsQuery>,
+    headers: HeaderMap,
+    who: Researcher,
+) -> Result<Response, Error> {
+    let told = Told::Events { from: query.from, sent: None };
+    stream(app, headers, &who, study, Role::Analyst, told)
+}
+
+/// What a stream tells.
+enum Told {
+    /// That something has changed.
+    Changes {
+        /// The beat that was told last.
+        told: String,
+    },
+    /// The events themselves.
+    Events {
+        /// Where it begins.
+        from: From,
+        /// What was sent of each session, by its key; none before the first look.
+        sent: Option<BTreeMap<i64, Sent>>,
+    },
+}
+
+/// Which events of a session need not be sent.
+#[derive(Default)]
+struct Sent {
+    /// Those before this one were there when the stream began.
+    before: u64,
+    sequences: BTreeSet<u64>,
+}
+
+impl Told {
+    /// What is to be sent at a beat, a session at a time: nothing once all is sent.
+    async fn lines(
+        &mut self,
+        app: &App,
+        study: &str,
+        beat: &str,
+    ) -> Result<Vec<Event>, StorageError> {
+        let (from, sent) = match self {
+            Self::Changes { told } if told == beat => return Ok(Vec::new()),
+            Self::Changes { told } => {
+                beat.clone_into(told);
+                return Ok(vec![Event::default().event("changed").data(beat)]);
+            }
+            Self::Events { from, sent } => (*from, sent),
+        };
+        let states = app.storage.session_states(study, FORM).await?;
+        let is_first = sent.is_none();
+        let sent = sent.get_or_insert_default();
+        for state in states.iter().filter(|state| !state.is_deleted) {
+            let stored = state.counted.event_count;
+            let known = sent.entry(state.key).or_insert_with(|| {
+                let there = is_first && from == From::Now;
+                Sent { before: if there { stored } else { 0 }, sequences: BTreeSet::new() }
+            });
+            if stored <= known.before + known.sequences.len() as u64 {
+                continue;
+            }
+            let mut events = app.storage.events(state.key).await?;
+            events.retain(|event| {
+                event.sequence >= known.before && known.sequences.insert(event.sequence)
+            });
+            if !events.is_empty() {
+                return Ok(events.iter().map(|event| line(state, event)).collect());
+            }
+        }
+        Ok(Vec::new())
+    }
+}
+
+fn line(state: &SessionState, event: &Stored) -> Event {
+    let kind = event.body["type"].as_str().unwrap_or("event");
+    let data = json!({
+        "participant": state.participant,
+        "condition": state.condition,
+        "stage": state.stage,
+        "config_hash": state.config_hash,
+        "event": event,
+    });
+    let id = format!("{}.{}", state.participant, event.sequence);
+    Event::default().event(kind).id(id).data(data.to_string())
+}
+
+/// A stream of one who may do so much, for as long as they may.
+fn stream(
+    app: App,
+    headers: HeaderMap,
+    who: &Researcher,
+    study: String,
+    role: Role,
+    mut told: Told,
+) -> Result<Response, Error> {
+    who.needs_in(&study, role)?;
+    app.study(&study)?;
+    let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
+    let mut beats = app.pulse.listen();
+    let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
+    tokio::spawn(async move {
+        let _place = place;
+        let mut last = None;
+        loop {
+            let now = beats.borrow_and_update().get(&study).cloned().unwrap_or_default();
+            while last.as_ref() != Some(&now) {
+                // A database that does not answer is asked again at the next change.
+                let Ok(lines) = told.lines(&app, &study, &now).await else { break };
+                if lines.is_empty() {
+                    last = Some(now);
+                    break;
+                }
+                for line in lines {
+                    if sender.send(Ok(line)).await.is_err() {
+                        return;
+                    }
+                }
+            }
+            tokio::select! {
+                changed = beats.changed() => if changed.is_err() { break },
+                // Whoever has logged out meanwhile, or lost the account, sees no more.
+                () = tokio::time::sleep(RECHECK) => {
+                    let now = Researcher::of(&app, &headers).await;
+                    if now.and_then(|who| who.needs_in(&study, role)).is_err() {
+                        break;
+                    }
+                }
+                () = app.pulse.stopped() => break,
+                () = sender.closed() => break,
+            }
+        }
+    });
+    let stream = Sse::new(ReceiverStream::new(receiver));
+    let mut response = stream.keep_alive(KeepAlive::default()).into_response();
+    // Proxies must not gather what is to be seen at once.
+    let name = HeaderName::from_static("x-accel-buffering");
+    response.headers_mut().insert(name, HeaderValue::from_static("no"));
+    Ok(response)
+}
