@@ -25,7 +25,7 @@ use crate::clock::now_ms;
 use crate::error::Error;
 use crate::export::{self, Cells, Export, Format, Options};
 use crate::http::extract::Asked;
-use crate::http::responses::{attachment, see};
+use crate::http::responses::{attachment, see, whole_address};
 use crate::participant::withdrawal::withdrawal_hash;
 use crate::researcher::dashboard::overview::{Notice, Overview, Person, Wanted};
 use crate::researcher::pages::frame::Frame;
@@ -355,11 +355,14 @@ pub(crate) async fn export(
 pub(crate) async fn report(
     State(app): State<App>,
     Path((id, code, name)): Path<(String, String, String)>,
+    headers: HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
     let study = visible(&app, &who, &id, Role::Analyst)?;
     let language = Language::from_code(&code).ok_or(Error::NotFound)?;
-    let report = app.reports.get(&app.storage, &study, language).await?;
+    // A report that is saved leads here, too.
+    let preview = whole_address(&app, &headers, &format!("/preview/{}", study.id()));
+    let report = app.reports.get(&app.storage, &study, language, &preview).await?;
     if name == "report.zip" {
         let files: Vec<_> = report
             .files

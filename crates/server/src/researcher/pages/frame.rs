@@ -190,7 +190,7 @@ pub(crate) fn day(at_ms: i64) -> Markup {
 
 /// A text as part of an address's query.
 pub(crate) fn escaped(text: &str) -> String {
-    crate::state::hosted_study::percent_encoded(text)
+    mimique_study::percent_encoded(text)
 }
 
 #[cfg(test)]
