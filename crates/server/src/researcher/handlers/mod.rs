@@ -3,4 +3,5 @@
 pub(crate) mod accounts;
 mod inline_styles;
 pub(crate) mod people;
+pub(crate) mod replays;
 pub(crate) mod studies;

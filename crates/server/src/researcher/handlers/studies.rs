@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use axum::extract::{Path, State};
-use axum::http::{HeaderName, HeaderValue, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use mimique_analysis::Language;
@@ -102,7 +102,7 @@ fn standing_of(word: &str) -> Result<Standing, Error> {
 }
 
 /// A study in which somebody may do so much.
-fn visible(
+pub(super) fn visible(
     app: &App,
     who: &Researcher,
     id: &str,
@@ -301,7 +301,11 @@ async fn change_exclusion(
     Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
 }
 
-async fn session(app: &App, study: &str, number: u64) -> Result<SessionRecord, Error> {
+pub(super) async fn session(
+    app: &App,
+    study: &str,
+    number: u64,
+) -> Result<SessionRecord, Error> {
     match app.storage.participant_session(study, number).await {
         Err(StorageError::UnknownSession) => Err(Error::NotFound),
         found => Ok(found?),
@@ -360,8 +364,11 @@ pub(crate) async fn report(
 ) -> Result<Response, Error> {
     let study = visible(&app, &who, &id, Role::Analyst)?;
     let language = Language::from_code(&code).ok_or(Error::NotFound)?;
-    // A report that is saved leads here, too.
-    let preview = whole_address(&app, &headers, &format!("/preview/{}", study.id()));
+    let mut preview = format!("/preview/{}", study.id());
+    if name != "report.html" {
+        // A report that is saved leads here, too.
+        preview = whole_address(&app, &headers, &preview);
+    }
     let report = app.reports.get(&app.storage, &study, language, &preview).await?;
     if name == "report.zip" {
         let files: Vec<_> = report
