@@ -76,8 +76,9 @@ class Asked {
     const address = new URLSearchParams(location.search);
     const known = (name) => {
       const id = address.get(name);
-      if (id !== null && !(id in clips)) problem(`This study has no clip ${id} (“${name}” in the address of this page): choose one of the list.`);
-      return id !== null && id in clips ? id : null;
+      if (id === null || Object.hasOwn(clips, id)) return id;
+      problem(`This study has no clip ${id} (“${name}” in the address of this page): choose one of the list.`);
+      return null;
     };
     this.clip = known("clip");
     this.beside = known("beside");

@@ -232,7 +232,7 @@ function drawStrip(log, { longestMs }) {
   };
   const ticks = (frames) => frames.map(([shown, , isLate]) => `M${x(shown)} ${isLate ? 2 : 14}V${isLate ? 38 : 26}`).join("");
   const svg = part("svg", { viewBox: "0 0 1000 40", preserveAspectRatio: "none", role: "img", "aria-label": label });
-  const gaps = late.map(({ at, shown, ms }) => part("rect", { class: "gap", x: x(log.shownMs(at - 1)), y: 14, width: x(ms), height: 12, "data-late": shown }));
+  const gaps = late.map(({ at, ms }) => part("rect", { class: "gap", x: x(log.shownMs(at - 1)), y: 14, width: x(ms), height: 12 }));
   const cursor = part("path", { class: "cursor", d: "M0 0V40" });
   svg.append(
     ...gaps,
