@@ -71,14 +71,14 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         Some(path) => Some(read_table(path).with_context(|| place(path))?),
         None => None,
     };
-    let options =
-        ReportOptions { stimuli: stimuli.as_ref(), preview: args.preview_url.as_deref() };
+    let options = ReportOptions { stimuli: stimuli.as_ref(), preview: args.preview_url.as_deref() };
     let report = analyze_with(&table, &study, args.language, options).map_err(|error| {
         let of_stimuli = matches!(error, ExportError::Stimuli(_));
         let file = args.stimuli.as_ref().filter(|_| of_stimuli).unwrap_or(&args.export);
         anyhow::Error::from(error).context(place(file))
     })?;
-    let written = report_folder::write(&report.files, &args.out).with_context(|| place(&args.out))?;
+    let written =
+        report_folder::write(&report.files, &args.out).with_context(|| place(&args.out))?;
 
     let mut out = std::io::stdout().lock();
     let page = args.out.join("report.html");

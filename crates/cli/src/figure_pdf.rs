@@ -74,9 +74,8 @@ fn collect_missing(group: &Group, missing: &mut BTreeSet<String>) {
             Node::Group(inner) => collect_missing(inner, missing),
             Node::Text(text) => {
                 let glyphs = text.layouted().iter().flat_map(|span| &span.positioned_glyphs);
-                missing.extend(
-                    glyphs.filter(|glyph| glyph.id.0 == 0).map(|glyph| glyph.text.clone()),
-                );
+                missing
+                    .extend(glyphs.filter(|glyph| glyph.id.0 == 0).map(|glyph| glyph.text.clone()));
             }
             Node::Path(_) | Node::Image(_) => {}
         }
@@ -105,14 +104,20 @@ mod tests {
         let pages = read.get_pages();
         assert_eq!(pages.len(), 1);
         let page = read.get_dictionary(pages[&1]).unwrap();
-        let ends: Vec<f32> = page.get(b"MediaBox").and_then(Object::as_array).unwrap().iter()
+        let ends: Vec<f32> = page
+            .get(b"MediaBox")
+            .and_then(Object::as_array)
+            .unwrap()
+            .iter()
             .map(|end| end.as_float().unwrap())
             .collect();
         assert_eq!(ends, [0.0, 0.0, 330.0, 75.0]);
         let text = read.extract_text(&[1]).unwrap();
         assert!(text.contains("Crédibilité") && text.contains("p = 0.03, −0.5 ± 1 µ"), "{text}");
         // Both weights are the binary's own, cut to the signs that are used.
-        let fonts: BTreeSet<String> = read.objects.values()
+        let fonts: BTreeSet<String> = read
+            .objects
+            .values()
             .filter_map(|object| object.as_dict().ok()?.get(b"BaseFont").ok()?.as_name().ok())
             .map(|name| String::from_utf8_lossy(name).into_owned())
             .collect();
@@ -125,7 +130,7 @@ mod tests {
     fn colours_are_those_of_paper() {
         let pdf = FigurePdf::new().of_svg("shares", &figure("A")).unwrap();
         let read = Read::load_mem(&pdf).unwrap();
-        let drawn = read.get_page_content(read.get_pages()[&1]).unwrap();
+        let drawn = read.get_page_content(read.get_pages()[&1]);
         let drawn = String::from_utf8_lossy(&drawn).into_owned();
         // The fill of .box, #cfe1f2, and not that of a dark screen.
         assert!(drawn.contains("0.8117647 0.88235295 0.9490196"), "{drawn}");

@@ -31,9 +31,7 @@ pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<Vec<String>> {
 /// The PDF of each figure, by its path.
 fn figures_as_pdf(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
     let figures: Vec<(&str, &ReportFile)> = (files.iter())
-        .filter_map(|file| {
-            Some((file.path.strip_prefix("figures/")?.strip_suffix(".svg")?, file))
-        })
+        .filter_map(|file| Some((file.path.strip_prefix("figures/")?.strip_suffix(".svg")?, file)))
         .collect();
     let maker = FigurePdf::new();
     let made: Vec<_> =

@@ -52,9 +52,8 @@ impl Reports {
         let csv = exported.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
         let (_, stimuli) = stimuli(storage, Some(study.id())).await?;
         let (study, preview) = (study.study().clone(), preview.to_owned());
-        let made = tokio::task::spawn_blocking(move || {
-            make(&csv, &stimuli, &study, language, &preview)
-        });
+        let made =
+            tokio::task::spawn_blocking(move || make(&csv, &stimuli, &study, language, &preview));
         let report = made.await.map_err(Error::internal)??;
         let report = Arc::new(report);
         let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);

@@ -136,11 +136,6 @@ impl<'p> Seen<'p> {
         if self.frames_of != Some(self.pages.len()) {
             log.frames = Vec::new();
         }
-        Some(SeenPlay {
-            clips,
-            in_turn: alone.is_none() && trial.is_in_turn(),
-            frames,
-            log,
-        })
+        Some(SeenPlay { clips, in_turn: alone.is_none() && trial.is_in_turn(), frames, log })
     }
 }

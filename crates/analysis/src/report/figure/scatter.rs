@@ -102,7 +102,8 @@ mod tests {
             [("a".to_owned(), 0.5, 2.0), ("b".to_owned(), 1.5, 5.5), ("c".to_owned(), 1.0, 4.0)];
         let titles = ["Jerk (m/s³)", "RMSE (mm)", "Range (mm)"];
         let panels = titles.map(|title| ScatterPanel { title: title.to_owned(), points: &points });
-        let figure = scatter(Language::English, "f", "Answers and measures", "How real?", &panels, None);
+        let figure =
+            scatter(Language::English, "f", "Answers and measures", "How real?", &panels, None);
         assert_eq!(figure.svg.matches("class=\"dot\"").count(), 9);
         assert!(figure.svg.contains("role=\"img\"") && !figure.svg.contains("<a "));
         assert_eq!(figure.data.rows.len(), 9);

@@ -116,7 +116,7 @@ pub(super) fn visible(
 pub(crate) async fn live(
     State(app): State<App>,
     Path(id): Path<String>,
-    headers: axum::http::HeaderMap,
+    headers: HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
     let study = visible(&app, &who, &id, Role::Viewer)?.id().to_owned();
@@ -301,11 +301,7 @@ async fn change_exclusion(
     Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
 }
 
-pub(super) async fn session(
-    app: &App,
-    study: &str,
-    number: u64,
-) -> Result<SessionRecord, Error> {
+pub(super) async fn session(app: &App, study: &str, number: u64) -> Result<SessionRecord, Error> {
     match app.storage.participant_session(study, number).await {
         Err(StorageError::UnknownSession) => Err(Error::NotFound),
         found => Ok(found?),

@@ -46,10 +46,7 @@ fn consent(agreement: &AgreementView) -> Screen {
     let sections = agreement.sections.iter().flat_map(|section| {
         std::iter::once(section.heading.clone()).chain(section.text.iter().cloned())
     });
-    page(
-        &agreement.title,
-        std::iter::once(agreement.description.clone()).chain(sections).collect(),
-    )
+    page(&agreement.title, std::iter::once(agreement.description.clone()).chain(sections).collect())
 }
 
 fn feedback(feedback: &FeedbackView) -> Screen {
