@@ -159,11 +159,12 @@ async function showPage(place) {
   if (!list) return;
   list.after($("player"));
   try {
-    const { configHash, plays } = await fetched(`${root.dataset.plays}/${place}`);
+    const { configHash, besideLeft, plays } = await fetched(`${root.dataset.plays}/${place}`);
     if (mine !== asked) return;
     const which = $("which");
     which.replaceChildren(...plays.map(({ aborted }, at) => new Option(say(aborted ? "cut" : "whole", { number: at + 1 }), at)));
     $("which-label").hidden = plays.length < 2;
+    $("stages").className = `replay-stages${plays[0].clips.length === 2 ? " pair" : ""}${besideLeft ? " mirrored" : ""}`;
     which.onchange = () => showPlay(configHash, plays[which.value], ++asked).catch(problem);
     await showPlay(configHash, plays[0], mine);
   } catch (error) {
@@ -246,7 +247,7 @@ function drawStrip(log, { longestMs }) {
     player.seek((duration * (event.clientX - box.left)) / box.width);
   });
   player.onDraw = (timeMs) => cursor.setAttribute("d", `M${x(timeMs)} 0V40`);
-  $("strip").replaceChildren(svg, made("p", { className: "soft number" }, label));
+  $("strip").replaceChildren(svg, made("p", { className: "soft" }, label));
   if (late.length === 0) return;
   const buttons = late.slice(0, MOST_LATE).map(({ shown, ms }) => {
     const button = made("button", { type: "button", className: "quiet" }, say("lateFrame", { seconds: number(shown / 1000, 2), ms: number(ms, 0) }));

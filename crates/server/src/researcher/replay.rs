@@ -1,7 +1,7 @@
 //! A session gone through again: what its participant saw, made of its events under its own version of the study.
 
 use mimique_session::EventKind;
-use mimique_session::flow::{PlacedClip, Plan, Seen, SeenPage, SeenPlay};
+use mimique_session::flow::{PlacedClip, Plan, Seen, SeenPage, SeenPlay, View};
 use mimique_storage::{SessionRecord, Storage};
 use serde::Serialize;
 use serde_json::Value;
@@ -42,7 +42,15 @@ impl Replay {
     pub fn plays(&self, page: usize) -> Option<Plays> {
         let page = self.pages.get(page)?;
         let plays = page.plays.iter().map(|play| Play::of(&self.plan, play)).collect();
-        Some(Plays { config_hash: self.plan.started.config_hash.clone(), plays })
+        let beside = match &page.view {
+            View::Trial(trial) => trial.beside.as_ref(),
+            _ => None,
+        };
+        Some(Plays {
+            config_hash: self.plan.started.config_hash.clone(),
+            beside_left: beside.is_some_and(|beside| beside.left),
+            plays,
+        })
     }
 }
 
@@ -52,6 +60,8 @@ impl Replay {
 pub(crate) struct Plays {
     /// The version of the study in which the clips are.
     config_hash: String,
+    /// Whether the second clip of a pair stood left.
+    beside_left: bool,
     plays: Vec<Play>,
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn replay_page(
         @if screens.is_empty() {
             p.soft { (frame.say("Nothing is stored.", "Rien n’est conservé.")) }
         } @else {
-            (pages_bar(frame, &screens))
+            (pages_bar(frame, &screens, &session.language))
             div #replay data-study=(study) data-plays=(address) data-words=(script_words(frame)) {
                 @for (number, (page, screen)) in (1..).zip(replay.pages.iter().zip(&screens)) {
                     (seen_page(frame, number, page, screen, &session.language))
@@ -70,7 +70,7 @@ pub(crate) fn replay_page(
 }
 
 /// From page to page; the script shows it.
-fn pages_bar(frame: &Frame, screens: &[Screen]) -> Markup {
+fn pages_bar(frame: &Frame, screens: &[Screen], language: &str) -> Markup {
     html! {
         div.card.replay-bar #pages role="group" aria-label=(frame.say("Pages seen", "Pages vues")) hidden {
             button #before type="button" aria-keyshortcuts="P" { "← " (frame.say("previous", "précédente")) }
@@ -78,7 +78,7 @@ fn pages_bar(frame: &Frame, screens: &[Screen]) -> Markup {
                 (frame.say("Page", "Page")) " "
                 select #page {
                     @for (number, screen) in (1..).zip(screens) {
-                        option value=(number) { (number) ". " (screen.heading) }
+                        option value=(number) lang=(language) { (number) ". " (screen.heading) }
                     }
                 }
             }
@@ -130,7 +130,7 @@ fn seen_page(
                                     None => span.soft { (frame.say("no answer", "sans réponse")) },
                                 }
                                 @if let Some(at_ms) = page.answered_ms.get(&question.id) {
-                                    " " span.soft.number {
+                                    " " span.soft {
                                         @if onset.is_some() {
                                             (frame.say("after the first frame: ", "après la première image : "))
                                         } @else {
@@ -154,7 +154,7 @@ fn play_line(frame: &Frame, SeenPlay { clips, frames, log, .. }: &SeenPlay) -> M
     let longest = frame.language.fixed(log.longest_ms, 1);
     let late = log.late;
     html! {
-        strong { (names.join(" · ")) } ": "
+        strong { (names.join(" · ")) } (frame.say(": ", " : "))
         (frame.say(
             format!("{frames} frames, {late} late, longest {longest} ms"),
             format!("{frames} images, {late} en retard, la plus longue {longest} ms"),
