@@ -70,6 +70,24 @@ function withFaces(prepared, components) {
   return clips;
 }
 
+// What the address asks for: `clip`, `beside` it, and the time `t` in seconds.
+class Asked {
+  constructor(clips) {
+    const address = new URLSearchParams(location.search);
+    const known = (name) => {
+      const id = address.get(name);
+      if (id === null || Object.hasOwn(clips, id)) return id;
+      problem(`This study has no clip ${id} (“${name}” in the address of this page): choose one of the list.`);
+      return null;
+    };
+    this.clip = known("clip");
+    this.beside = known("beside");
+    const seconds = Number(address.get("t") ?? 0);
+    if (!(seconds >= 0)) problem(`“t” in the address of this page is ${address.get("t")}: give seconds, such as 1.5.`);
+    this.timeMs = seconds > 0 ? 1000 * seconds : 0;
+  }
+}
+
 /// Shows how the clips of both panels differ.
 function compare() {
   const [a, b] = player.panels.map((panel) => panel.wanted());
@@ -111,6 +129,12 @@ class Panel {
 
   focus() {
     this.#select.focus();
+  }
+
+  /// Brings the panel to where it is seen, and the keyboard with it.
+  reveal() {
+    this.#element.scrollIntoView({ block: "start" });
+    this.#select.focus({ preventScroll: true });
   }
 
   clip() {
@@ -259,9 +283,13 @@ async function start() {
   player.wire({ a: () => player.panels[0]?.focus(), b: () => player.panels[1]?.focus() });
   refreshPeriod().then((period) => ($("refresh").textContent = `${(1000 / period).toFixed(1)} Hz`));
   comparison.load(study).then(compare, problem);
+  const asked = new Asked(clips);
+  const first = asked.clip ?? ids[0];
   // B: the same take solved by another method, where the study has one.
-  const other = ids.find((id) => clips[id].take === clips[ids[0]].take && id !== ids[0]) ?? "";
-  await Promise.all([player.panels[0].choose(ids[0]), player.panels[1].choose(other)]);
+  const other = asked.beside ?? ids.find((id) => clips[id].take === clips[first].take && id !== first) ?? "";
+  await Promise.all([player.panels[0].choose(first), player.panels[1].choose(other)]);
+  if (asked.timeMs > 0) player.seek(asked.timeMs);
+  if (asked.clip !== null) player.panels[0].reveal();
 }
 
 start().catch(problem);

@@ -17,6 +17,8 @@ export class Player {
   onRate = () => {};
   /// What the button says that plays and pauses.
   words = { play: "Play", pause: "Pause" };
+  /// How seconds are written.
+  written = (seconds) => seconds.toFixed(2);
   #last = null;
   #drawn = 0;
   #since = null;
@@ -29,6 +31,12 @@ export class Player {
   frameMs() {
     const rates = this.panels.map((panel) => panel.clip()?.rate_hz ?? 0);
     return 1000 / Math.max(...rates, 1);
+  }
+
+  /// One frame on (1) or back (-1).
+  step(by) {
+    this.pause();
+    this.seek(this.timeMs + by * this.frameMs());
   }
 
   #range() {
@@ -48,7 +56,7 @@ export class Player {
     const scrub = $("scrub");
     scrub.max = Math.max(1, Math.round(duration));
     scrub.value = Math.round(this.timeMs);
-    const text = `${(this.timeMs / 1000).toFixed(2)} / ${(duration / 1000).toFixed(2)} s`;
+    const text = `${this.written(this.timeMs / 1000)} / ${this.written(duration / 1000)} s`;
     $("clock").textContent = text;
     scrub.setAttribute("aria-valuetext", text);
     this.onDraw(this.timeMs);
@@ -106,22 +114,26 @@ export class Player {
     return Math.max(0, ...this.panels.map((panel) => panel.drawn));
   }
 
-  /// Joins the page's controls; `more` are further keys.
+  /// Joins the page's controls with the list of views; `more` are further keys.
   wire(more = {}) {
-    const keys = {
-      " ": () => this.toggle(),
-      ",": () => (this.pause(), this.seek(this.timeMs - this.frameMs())),
-      ".": () => (this.pause(), this.seek(this.timeMs + this.frameMs())),
-      l: () => ($("loop").checked = !$("loop").checked),
-      s: () => cycle($("speed")),
-      v: () => cycle($("view")),
-      ...more,
-    };
     this.wireControls();
     $("view").addEventListener("change", () => {
       for (const panel of this.panels) panel.turn();
       this.draw();
     });
+    this.wireKeys({ v: () => cycle($("view")), ...more });
+  }
+
+  /// Joins keys and the window's size, for a page without views.
+  wireKeys(more = {}) {
+    const keys = {
+      " ": () => this.toggle(),
+      ",": () => this.step(-1),
+      ".": () => this.step(1),
+      l: () => ($("loop").checked = !$("loop").checked),
+      s: () => cycle($("speed")),
+      ...more,
+    };
     addEventListener("keydown", (event) => onKey(event, keys));
     addEventListener("resize", () => this.playing || this.draw());
   }
@@ -129,8 +141,8 @@ export class Player {
   /// Joins the controls alone, for a page with keys and views of its own.
   wireControls() {
     $("play").addEventListener("click", () => this.toggle());
-    $("back").addEventListener("click", () => (this.pause(), this.seek(this.timeMs - this.frameMs())));
-    $("forth").addEventListener("click", () => (this.pause(), this.seek(this.timeMs + this.frameMs())));
+    $("back").addEventListener("click", () => this.step(-1));
+    $("forth").addEventListener("click", () => this.step(1));
     $("scrub").addEventListener("input", () => (this.pause(), this.seek(Number($("scrub").value))));
   }
 }

@@ -10,7 +10,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { serve } from "./lib/server.mjs";
+import { root, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -210,6 +210,82 @@ test("researcher: account, live dashboard, exclusion, export, upload", { skip: u
     assert.deepEqual(errors, [], "the console is clean");
     const elsewhere = browser.requests.filter((url) => !url.startsWith(server.url) && !/^(data|blob|about):/.test(url));
     assert.deepEqual(elsewhere, [], "no request leaves the study's own server");
+  } finally {
+    await browser.close();
+    await server.stop();
+  }
+});
+
+/** The answers to every clip of the demonstration study, by the interface alone. */
+async function answersToDemo(server, number) {
+  const post = async (path, body) => {
+    const answer = await fetch(`${server.url}${path}`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+    assert.ok(answer.ok, `${path}: ${answer.status} ${await answer.clone().text()}`);
+    return answer.json();
+  };
+  const { study, clips } = await (await fetch(`${server.url}/api/studies/demo`)).json();
+  const started = await post("/api/studies/demo/sessions", { nonce: String(number).repeat(32), language: "en", client: {} });
+  const [block, component] = Object.entries(study.components).find(([, { type }]) => type === "trials");
+  const bodies = [
+    { type: "opened", client: { viewport: [1280, 900], device_pixel_ratio: 1 }, language: "en" },
+    { type: "consented", version: study.consent.version, language: "en" },
+  ];
+  for (const [place, clip] of Object.keys(clips).entries()) {
+    const step = `${block}/${clip}`;
+    const answers = {};
+    for (const id of component.questions) {
+      const asked = study.questions.find((each) => each.id === id);
+      answers[id] = asked.options?.[place % asked.options.length].value ?? 1 + ((place * number) % 5);
+    }
+    const log = { backend: "webgl2", onset_ms: Date.now(), frames: [[0, 0, 0]], refresh_hz: 60 };
+    bodies.push({ type: "trial_started", step, clip }, { type: "trial_played", step, log }, { type: "trial_finished", step, clip, answers, rt_ms: 2000, replays: 0 });
+  }
+  bodies.push({ type: "finished" });
+  const events = bodies.map((body, sequence) => ({ sequence, at_ms: Date.now() + sequence, body }));
+  await post(`/api/sessions/${started.session}/events`, { events });
+}
+
+test("report: a point that stands for a clip leads to that clip in the preview", { skip: unable, timeout: 300_000 }, async () => {
+  const server = await serve([join(root, "study-config/demo.json")]);
+  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 } });
+  const { page } = browser;
+  try {
+    for (const number of [1, 2, 3, 4, 5, 6]) await answersToDemo(server, number);
+    await page.goto(server.researcher());
+    await page.getByLabel("E-mail").fill("ada@example.org");
+    await page.getByLabel("Password").fill(password);
+    await page.keyboard.press("Enter");
+    await page.waitForURL("**/researcher");
+    await page.goto(`${server.url}/researcher/studies/demo/report/en/report.html`);
+    const points = page.locator("figure svg a.clip");
+    assert.ok((await points.count()) >= 12, `${await points.count()} points lead to clips`);
+    await page.evaluate(axe);
+    const found = await page.evaluate(async (tags) => (await window.axe.run("figure:has(a.clip)", { runOnly: { type: "tag", values: tags } })).violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), standards);
+    assert.deepEqual(found, [], "axe on a figure with links");
+
+    // By the keyboard: the point says where it leads, and shows that it has the focus.
+    const point = points.nth(5);
+    await points.nth(4).focus();
+    await page.keyboard.press("Tab");
+    assert.ok(await point.evaluate((link) => link === document.activeElement && link.matches(":focus-visible")));
+    const title = await point.locator("title").textContent();
+    const clip = title.replace("Preview of ", "");
+    assert.equal(await point.locator("circle").evaluate((dot) => getComputedStyle(dot).strokeWidth), "3px");
+    await page.keyboard.press("Enter");
+    await page.waitForURL(`**/preview/demo?clip=${encodeURIComponent(clip)}`);
+    await page.waitForSelector("#clip-a");
+    await page.waitForFunction((wanted) => document.activeElement?.id === "clip-a" && document.activeElement.value === wanted, clip, { timeout: 120_000 });
+    assert.equal(await page.locator("#problem:visible").count(), 0);
+
+    // The same with a clip beside it and a time; what the study does not have is said.
+    const other = await page.locator("#clip-a option").nth(3).textContent();
+    await page.goto(`${server.url}/preview/demo?clip=${clip}&beside=${other}&t=0.5`);
+    await page.waitForFunction(() => document.getElementById("clock").textContent.startsWith("0.50 /"), undefined, { timeout: 120_000 });
+    assert.equal(await page.locator("#clip-b").inputValue(), other);
+    await page.goto(`${server.url}/preview/demo?clip=nobody`);
+    await page.waitForSelector("#problem:not([hidden])");
+    assert.match(await page.locator("#problem").textContent(), /^This study has no clip nobody .*choose one of the list/);
+    assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
     await browser.close();
     await server.stop();

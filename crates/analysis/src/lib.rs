@@ -63,7 +63,7 @@ pub use power::{
     power_runs, precision_csv, precision_markdown,
 };
 pub use preregistration::{Preregistration, preregistration};
-pub use report::{Report, ReportFile, analyze, analyze_with_stimuli};
+pub use report::{Report, ReportFile, ReportOptions, analyze, analyze_with};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates,
     Interaction, NumberAnswer, PairChoices, Parameters, ParametersError, PerceivedScale, Rating,

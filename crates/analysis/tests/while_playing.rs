@@ -7,12 +7,15 @@ mod simulated;
 
 use std::collections::{BTreeMap, HashMap};
 
-use followed::{followed, followers, speeded};
-use mimique_analysis::{Language, Parameters, Simulation, analyze};
+use followed::{followed, followed_with, followers, speeded};
+use mimique_analysis::{Language, Parameters, ReportOptions, Simulation, analyze_with};
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;
 use simulated::simulated_export;
+
+/// The preview to which figures lead.
+const PREVIEW: &str = "http://lab.example/preview/speeded";
 
 fn results(
     study: &Study,
@@ -21,7 +24,9 @@ fn results(
 ) -> (Value, HashMap<String, String>) {
     let simulation = Simulation::new(study, "hash", parameters, 7).unwrap();
     let csv = simulated_export(&simulation, study, people);
-    let report = analyze(&Table::parse(csv.as_bytes()).unwrap(), study, Language::English).unwrap();
+    let table = Table::parse(csv.as_bytes()).unwrap();
+    let options = ReportOptions { preview: Some(PREVIEW), ..ReportOptions::default() };
+    let report = analyze_with(&table, study, Language::English, options).unwrap();
     let files: HashMap<String, String> =
         report.files.into_iter().map(|file| (file.path, file.text)).collect();
     (serde_json::from_str(&files["results.json"]).unwrap(), files)
@@ -126,7 +131,32 @@ fn courses_that_part_are_found_from_then_on_and_marked() {
     let svg = &files["figures/strength-while-playing.svg"];
     assert_eq!(svg.matches("class=\"mark\"").count(), 2, "{svg}");
     assert!(svg.contains("Clusters that differ"), "{svg}");
+    // Each method has many clips: a cluster stands for none of them.
+    assert!(!svg.contains(PREVIEW), "{svg}");
     assert!(files["report.md"].contains("with seed 1"));
     let table = &files["tables/strength-while-playing-clusters.csv"];
     assert_eq!(table.lines().count(), 1 + 3, "{table}");
+}
+
+#[test]
+fn a_cluster_between_two_clips_leads_to_both_of_them_at_its_beginning() {
+    let study = followed_with(|file| {
+        file["stimuli"]["segments"].as_array_mut().unwrap().retain(|own| own["id"] == "joy2");
+    });
+    let parameters = followers(&study, [("box", 60.0), ("lsts", 60.0), ("recorded", 90.0)]);
+    let (results, files) = results(&study, &parameters, 24);
+    let found = significant(&results);
+    let svg = &files["figures/strength-while-playing.svg"];
+    let mut links = 0;
+    for (pair, spans) in found {
+        let (a, b) = pair.split_once(' ').unwrap();
+        for [from, _] in spans {
+            let place = format!("?clip=joy2.{a}&amp;beside=joy2.{b}&amp;t={from:.3}");
+            assert!(svg.contains(&place), "{place} in {svg}");
+            links += 1;
+        }
+    }
+    assert!(links >= 2, "{svg}");
+    assert_eq!(svg.matches(PREVIEW).count(), links);
+    assert!(svg.contains("role=\"group\"") && svg.contains("<title>Preview of joy2."), "{svg}");
 }

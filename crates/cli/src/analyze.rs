@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use mimique_analysis::{ExportError, Language, analyze_with_stimuli};
+use mimique_analysis::{ExportError, Language, ReportOptions, analyze_with};
 use mimique_stats::Table;
 use mimique_study::Study;
 use mimique_study::text::{counted, counted_as};
@@ -25,6 +25,10 @@ pub struct Args {
     /// answers are held against them
     #[arg(long, value_name = "FILE.csv")]
     stimuli: Option<PathBuf>,
+    /// Address of the study's preview, such as http://127.0.0.1:8080/preview/demo: in the figures what stands for one clip
+    /// leads to that clip there
+    #[arg(long, value_name = "URL", value_parser = preview_address)]
+    preview_url: Option<String>,
     /// Folder for the report; an earlier report in it is replaced
     #[arg(long)]
     out: PathBuf,
@@ -44,6 +48,17 @@ pub fn language(code: &str) -> Result<Language, String> {
     Language::from_code(code).ok_or_else(|| "reports are written in en or fr".to_owned())
 }
 
+/// An address that `?clip=ID` can follow.
+fn preview_address(text: &str) -> Result<String, String> {
+    let known = text.starts_with("http://") || text.starts_with("https://");
+    if !known || text.contains(['?', '#']) || text.contains(char::is_whitespace) {
+        return Err("give the whole address of the study's preview, such as \
+             http://127.0.0.1:8080/preview/demo, without ? and #"
+            .to_owned());
+    }
+    Ok(text.trim_end_matches('/').to_owned())
+}
+
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let place = |path: &Path| path.display().to_string();
@@ -56,13 +71,14 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         Some(path) => Some(read_table(path).with_context(|| place(path))?),
         None => None,
     };
-    let report =
-        analyze_with_stimuli(&table, stimuli.as_ref(), &study, args.language).map_err(|error| {
-            let of_stimuli = matches!(error, ExportError::Stimuli(_));
-            let file = args.stimuli.as_ref().filter(|_| of_stimuli).unwrap_or(&args.export);
-            anyhow::Error::from(error).context(place(file))
-        })?;
-    report_folder::write(&report.files, &args.out).with_context(|| place(&args.out))?;
+    let options = ReportOptions { stimuli: stimuli.as_ref(), preview: args.preview_url.as_deref() };
+    let report = analyze_with(&table, &study, args.language, options).map_err(|error| {
+        let of_stimuli = matches!(error, ExportError::Stimuli(_));
+        let file = args.stimuli.as_ref().filter(|_| of_stimuli).unwrap_or(&args.export);
+        anyhow::Error::from(error).context(place(file))
+    })?;
+    let written =
+        report_folder::write(&report.files, &args.out).with_context(|| place(&args.out))?;
 
     let mut out = std::io::stdout().lock();
     let page = args.out.join("report.html");
@@ -73,7 +89,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "people_used": report.people.0,
             "people": report.people.1,
             "trials_used": report.trials,
-            "files": report.files.iter().map(|file| &file.path).collect::<Vec<_>>(),
+            "files": written,
             "readings": report.readings.iter().map(|(id, reading)| {
                 serde_json::json!({"hypothesis": id, "reading": reading})
             }).collect::<Vec<_>>(),
@@ -87,7 +103,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     for (id, reading) in &report.readings {
         writeln!(out, "{id}. {reading}")?;
     }
-    let files = counted(report.files.len(), "file");
+    let files = counted(written.len(), "file");
     writeln!(out, "{files}, report: {}", page.display())?;
     Ok(())
 }

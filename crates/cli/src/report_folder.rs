@@ -1,4 +1,4 @@
-//! A folder with a report: whole, or left as it was.
+//! A folder with a report: whole, or left as it was. Beside each figure's SVG stands its PDF.
 //!
 //! Everything is written into a folder beside it and renamed at the end.
 
@@ -7,16 +7,45 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use mimique_analysis::ReportFile;
 use mimique_storage::durable_file;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-/// Writes the files of a report into `out`, in the place of an earlier one.
+use crate::figure_pdf::FigurePdf;
+
+/// Writes the files of a report into `out`, in the place of an earlier one, and gives their paths. A figure that
+/// cannot be a PDF is named on standard error.
 ///
 /// # Errors
 /// A folder that holds something else than a report, and what the operating system says.
-pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<()> {
+pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<Vec<String>> {
     check(out)?;
+    let pdfs = figures_as_pdf(files);
     let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty());
     std::fs::create_dir_all(parent.unwrap_or(Path::new(".")))?;
-    durable_file::write_folder(out, |folder| write_files(files, folder))
+    let texts = files.iter().map(|file| (&file.path, file.text.as_bytes()));
+    let all: Vec<(&String, &[u8])> =
+        texts.chain(pdfs.iter().map(|(path, bytes)| (path, &**bytes))).collect();
+    durable_file::write_folder(out, |folder| write_files(&all, folder))?;
+    Ok(all.into_iter().map(|(path, _)| path.clone()).collect())
+}
+
+/// The PDF of each figure, by its path.
+fn figures_as_pdf(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
+    let figures: Vec<(&str, &ReportFile)> = (files.iter())
+        .filter_map(|file| Some((file.path.strip_prefix("figures/")?.strip_suffix(".svg")?, file)))
+        .collect();
+    let maker = FigurePdf::new();
+    let made: Vec<_> =
+        figures.into_par_iter().map(|(name, svg)| (name, maker.of_svg(name, &svg.text))).collect();
+    let mut pdfs = Vec::new();
+    for (name, made) in made {
+        match made {
+            Ok(bytes) => pdfs.push((format!("figures/{name}.pdf"), bytes)),
+            Err(error) => {
+                eprintln!("warning: figures/{name}.svg: {error:#}; take the SVG, it has no PDF");
+            }
+        }
+    }
+    pdfs
 }
 
 /// Refuses a folder that holds something else than a report.
@@ -38,13 +67,13 @@ pub fn sentence(text: &str) -> String {
     format!("{first}{}.", letters.as_str())
 }
 
-fn write_files(files: &[ReportFile], folder: &Path) -> anyhow::Result<()> {
-    for file in files {
-        let path = folder.join(&file.path);
+fn write_files(files: &[(&String, &[u8])], folder: &Path) -> anyhow::Result<()> {
+    for (name, bytes) in files {
+        let path = folder.join(name);
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent)?;
         }
-        std::fs::write(&path, &file.text).with_context(|| file.path.clone())?;
+        std::fs::write(&path, bytes).with_context(|| (*name).clone())?;
     }
     Ok(())
 }

@@ -17,6 +17,7 @@ mod projection;
 mod question;
 mod study_file;
 pub mod text;
+mod web_address;
 
 pub use answer::{AnswerProblem, Answers, alike};
 pub use canonical::{canonical, config_hash};
@@ -43,3 +44,4 @@ pub use question::{
     Showing, Simulated, SingleChoice, Slider, Summary, TRACE_HZ, Told,
 };
 pub use study_file::*;
+pub use web_address::percent_encoded;

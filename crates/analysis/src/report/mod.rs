@@ -9,6 +9,7 @@ pub(crate) mod figure;
 mod html;
 mod latex;
 mod markdown;
+mod preview;
 mod replay;
 pub(crate) mod results;
 pub(crate) mod section;
@@ -22,6 +23,7 @@ use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use crate::trials::stimulus_measures::StimulusMeasures;
 use document::{Block, DataTable, Document};
+use preview::Preview;
 
 /// One file of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,27 +47,36 @@ pub struct Report {
     pub readings: Vec<(String, String)>,
 }
 
+/// What a report may be made with beside the export and the study.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ReportOptions<'a> {
+    /// The table of stimuli: answers are held against what was measured of them, too.
+    pub stimuli: Option<&'a Table>,
+    /// Address of the study's preview: what stands for one clip in a figure leads to that clip there.
+    pub preview: Option<&'a str>,
+}
+
 /// Computes the report. Refuses an export without the columns of the tidy form or without any trial
 /// that can be used.
 pub fn analyze(table: &Table, study: &Study, language: Language) -> Result<Report, ExportError> {
-    analyze_with_stimuli(table, None, study, language)
+    analyze_with(table, study, language, ReportOptions::default())
 }
 
-/// The same, with the table of stimuli: answers are held against what was measured of them, too. Refuses a table without the
-/// column `stimulus`, or with text in a column of numbers.
-pub fn analyze_with_stimuli(
+/// The same with more. Refuses a table of stimuli without the column `stimulus`, or with text in a column of numbers.
+pub fn analyze_with(
     table: &Table,
-    stimuli: Option<&Table>,
     study: &Study,
     language: Language,
+    options: ReportOptions<'_>,
 ) -> Result<Report, ExportError> {
+    let ReportOptions { stimuli, preview } = options;
     let stimuli = stimuli.map(|table| StimulusMeasures::read(table, study)).transpose()?;
     let export = Export::read(table, study)?;
     if export.trials.is_empty() {
         return Err(export.flow.no_trial());
     }
     let section::Sections { document, results, readings, replay } =
-        section::write(&export, study, stimuli.as_ref(), language);
+        section::write(&export, study, stimuli.as_ref(), preview.map(Preview), language);
     let mut files = document_files(&document, language);
     files.push(ReportFile { path: "results.json".to_owned(), text: results });
     files.extend(replay);

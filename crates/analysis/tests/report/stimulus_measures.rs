@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use mimique_analysis::{ExportError, Language, Report, StimuliError, analyze_with_stimuli};
+use mimique_analysis::{ExportError, Language, Report, ReportOptions, StimuliError, analyze_with};
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;
@@ -12,7 +12,8 @@ use crate::support::{Raters, demo_study, export};
 fn report(study: &Study, stimuli: &str, language: Language) -> Result<Report, ExportError> {
     let table = Table::parse(export(study, &Raters { people: 30, effect: 1.5, seed: 7 })).unwrap();
     let stimuli = Table::parse(stimuli).unwrap();
-    analyze_with_stimuli(&table, Some(&stimuli), study, language)
+    let options = ReportOptions { stimuli: Some(&stimuli), preview: None };
+    analyze_with(&table, study, language, options)
 }
 
 /// A row per clip: a measure that follows the planted effect of the method, one that has nothing to do with anything, and a note.

@@ -14,6 +14,11 @@ pub fn speeded(change: impl FnOnce(&mut Value)) -> Study {
 
 /// A line that follows the clip, in the place of the keys.
 pub fn followed() -> Study {
+    followed_with(|_| ())
+}
+
+/// The same with a change.
+pub fn followed_with(change: impl FnOnce(&mut Value)) -> Study {
     speeded(|file| {
         file["questions"][0] = json!({
             "id": "strength", "type": "slider", "whilePlaying": true, "minimum": 0, "maximum": 100,
@@ -23,6 +28,7 @@ pub fn followed() -> Study {
         file["components"]["faces"]["questions"] = json!(["strength"]);
         file["hypotheses"][0]["response"] = json!("strength");
         file["hypotheses"][0].as_object_mut().unwrap().remove("measure");
+        change(file);
     })
 }
 

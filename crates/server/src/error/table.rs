@@ -113,6 +113,9 @@ refusals! {
     NoComparison { problem: String } = CONFLICT "no-comparison",
         en "the clips cannot be compared: {problem}"; "start the server again, so that it prepares the study anew",
         fr "les clips ne peuvent pas être comparés : {problem}"; "redémarrez le serveur, afin qu’il prépare de nouveau l’étude";
+    NoReplay { problem: String } = CONFLICT "no-replay",
+        en "the session cannot be gone through again: {problem}"; "read its events in the export",
+        fr "la session ne peut pas être parcourue de nouveau : {problem}"; "lisez ses événements dans l’export";
     UnknownSession = NOT_FOUND "unknown-session",
         en "no session has this token"; "start the study again from its address",
         fr "aucune session n’a ce jeton"; "reprenez l’étude depuis son adresse";

@@ -25,7 +25,7 @@ use tower_http::catch_panic::CatchPanicLayer;
 
 use crate::error::Error;
 use crate::participant::{pages, previews, withdrawal};
-use crate::researcher::handlers::{accounts, people, streams, studies};
+use crate::researcher::handlers::{accounts, people, replays, streams, studies};
 use crate::state::App;
 use crate::studio;
 use crate::uploads::handlers as uploads;
@@ -88,6 +88,8 @@ fn researchers(app: &App) -> Router<App> {
         .route(&format!("{STUDY}/keep"), post(studies::keep_overdue))
         .route("/researcher/clock", post(studies::confirm_clock))
         .route(PERSON, get(studies::participant))
+        .route(&format!("{PERSON}/replay"), get(replays::page))
+        .route(&format!("{PERSON}/replay/{{page}}"), get(replays::plays))
         .route(&format!("{PERSON}/exclude"), post(studies::exclude))
         .route(&format!("{PERSON}/include"), post(studies::include))
         .route(&format!("{PERSON}/erase"), post(studies::erase))

@@ -1,15 +1,26 @@
 //! Answers of more than one group of addresses.
 
 use axum::body::Body;
-use axum::http::{HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
 use crate::error::Error;
 use crate::files::static_file::content_type;
+use crate::state::App;
 
 /// Leads the browser to another page after a form.
 pub(crate) fn see(address: &str) -> Response {
     (StatusCode::SEE_OTHER, [(header::LOCATION, address)]).into_response()
+}
+
+/// The address as people open it.
+pub(crate) fn whole_address(app: &App, headers: &HeaderMap, path: &str) -> String {
+    if let Some(url) = &app.access.public_url {
+        return format!("{}{path}", url.trim_end_matches('/'));
+    }
+    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok()).unwrap_or_default();
+    let scheme = if app.is_encrypted() { "https" } else { "http" };
+    format!("{scheme}://{host}{path}")
 }
 
 /// The same answer with cookies.

@@ -3,4 +3,5 @@
 pub(crate) mod dashboard;
 pub(crate) mod handlers;
 pub(crate) mod pages;
+pub(crate) mod replay;
 pub(crate) mod reports;

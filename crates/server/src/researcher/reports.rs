@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mimique_analysis::{Language, Report, analyze_with_stimuli};
+use mimique_analysis::{Language, Report, ReportOptions, analyze_with};
 use mimique_stats::Table;
 use mimique_storage::Storage;
 use mimique_study::Study;
@@ -21,21 +21,22 @@ const MOST_KEPT: usize = 8;
 /// What the report was made from, and the report.
 type Kept = (String, Arc<Report>);
 
-/// The reports made so far, by study and language.
+/// The reports made so far, by study, language and address of the preview.
 #[derive(Default)]
 pub(crate) struct Reports {
-    made: Mutex<BTreeMap<(String, &'static str), Kept>>,
+    made: Mutex<BTreeMap<(String, &'static str, String), Kept>>,
 }
 
 impl Reports {
-    /// The report on the answers as they are now.
+    /// The report on the answers as they are now. Its figures lead to the preview at this address.
     pub async fn get(
         &self,
         storage: &Storage,
         study: &HostedStudy,
         language: Language,
+        preview: &str,
     ) -> Result<Arc<Report>, Error> {
-        let key = (study.id().to_owned(), language.code());
+        let key = (study.id().to_owned(), language.code(), preview.to_owned());
         let beats = storage.pulse().await?;
         let beat = beats.into_iter().find(|(id, _)| id == study.id()).map(|(_, beat)| beat);
         let state = format!("{} {}", study.config_hash(), beat.unwrap_or_default());
@@ -50,8 +51,9 @@ impl Reports {
         let exported = export(storage, Some(study.id()), Format::Csv, Options::default()).await?;
         let csv = exported.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
         let (_, stimuli) = stimuli(storage, Some(study.id())).await?;
-        let study = study.study().clone();
-        let made = tokio::task::spawn_blocking(move || make(&csv, &stimuli, &study, language));
+        let (study, preview) = (study.study().clone(), preview.to_owned());
+        let made =
+            tokio::task::spawn_blocking(move || make(&csv, &stimuli, &study, language, &preview));
         let report = made.await.map_err(Error::internal)??;
         let report = Arc::new(report);
         let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
@@ -63,13 +65,20 @@ impl Reports {
     }
 }
 
-fn make(csv: &[u8], stimuli: &[u8], study: &Study, language: Language) -> Result<Report, Error> {
+fn make(
+    csv: &[u8],
+    stimuli: &[u8],
+    study: &Study,
+    language: Language,
+    preview: &str,
+) -> Result<Report, Error> {
     // Without any row there is no table.
     let table = Table::parse(csv).map_err(no_report)?;
     // A study of tables has no stimuli.
     let shown = !study.clips().is_empty();
     let stimuli = shown.then(|| Table::parse(stimuli)).transpose().map_err(no_report)?;
-    analyze_with_stimuli(&table, stimuli.as_ref(), study, language).map_err(no_report)
+    let options = ReportOptions { stimuli: stimuli.as_ref(), preview: Some(preview) };
+    analyze_with(&table, study, language, options).map_err(no_report)
 }
 
 fn no_report(refusal: impl ToString) -> Error {

@@ -7,8 +7,7 @@ use mimique_session::wire::{Bundle, StudySummary};
 use mimique_stimulus::Places;
 use mimique_storage::{StorageError, StudyVersion};
 use mimique_study::ClipSource;
-use mimique_study::{Study, StudyFileError, config_hash};
-use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
+use mimique_study::{Study, StudyFileError, config_hash, percent_encoded};
 use serde_json::Value;
 
 use crate::export::sources::Version;
@@ -183,23 +182,5 @@ impl HostedStudy {
             filled = filled.replace(&format!("{{{name}}}"), &percent_encoded(value));
         }
         Some(filled)
-    }
-}
-
-/// All but the unreserved characters of RFC 3986.
-const RESERVED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
-
-/// Every byte but the unreserved ones of RFC 3986 as `%XX`.
-pub(crate) fn percent_encoded(text: &str) -> String {
-    utf8_percent_encode(text, RESERVED).to_string()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_goes_into_an_address_is_encoded() {
-        assert_eq!(percent_encoded("a b&c=é~"), "a%20b%26c%3D%C3%A9~");
     }
 }

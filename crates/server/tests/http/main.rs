@@ -18,6 +18,7 @@ mod participant;
 mod people;
 mod places;
 mod postgres;
+mod replays;
 mod researcher;
 mod retention;
 mod schemas;
@@ -127,6 +128,8 @@ topics! {
     pages::the_study_tells_participants_no_secrets,
     pages::the_server_says_that_it_is_ready,
     pages::a_database_that_cannot_be_written_is_not_ready,
+    replays::a_session_is_gone_through_again,
+    replays::a_replay_is_for_those_who_may_read_answers,
     exports::the_tidy_table_holds_every_answer,
     exports::every_form_is_the_same_each_time,
     exports::the_other_forms_hold_the_same_answers,

@@ -29,6 +29,7 @@ mod presses;
 mod render;
 mod render_gate;
 mod render_question;
+mod seen;
 mod state;
 mod update;
 mod view;
@@ -45,6 +46,7 @@ pub use input::Input;
 pub use mimique_study::{ChoiceView, QuestionKindView};
 pub use placed::{BESIDE_CANVAS, OWN_CANVAS, PlacedClip, canvas_of_place};
 pub use render::view;
+pub use seen::{Seen, SeenPage, SeenPlay};
 pub use state::{Live, Play, State};
 pub use update::update;
 pub use view::{

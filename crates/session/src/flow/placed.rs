@@ -42,6 +42,14 @@ impl TrialStep {
         let beside = beside.map(|(clip, _)| on(BESIDE_CANVAS, clip));
         [on(OWN_CANVAS, clip)].into_iter().chain(beside).collect()
     }
+
+    /// Whether its clips are played one after the other, not in step.
+    pub fn is_in_turn(&self) -> bool {
+        self.panel.as_ref().map_or_else(
+            || self.beside.as_ref().is_some_and(|beside| beside.in_turn),
+            |panel| panel.in_turn,
+        )
+    }
 }
 
 impl Panel {

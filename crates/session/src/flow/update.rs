@@ -324,10 +324,7 @@ impl<'a> Transition<'a> {
             self.record(EventKind::TrialStarted { step, clip, beside, panel, batch });
         }
         let clips = trial.placed(chosen.as_ref());
-        let in_turn = panel.map_or_else(
-            || trial.beside.as_ref().is_some_and(|beside| beside.in_turn),
-            |panel| panel.in_turn,
-        );
+        let in_turn = trial.is_in_turn();
         self.run(Effect::PlayClips { clips, in_turn }, None)
     }
 

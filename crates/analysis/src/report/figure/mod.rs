@@ -35,7 +35,7 @@ pub(crate) use ranking::ranking;
 pub(crate) use roc::roc_curves;
 pub(crate) use scatter::{ScatterPanel, scatter};
 pub(crate) use shares::shares;
-pub(crate) use traces::traces;
+pub(crate) use traces::{TraceSpans, traces};
 
 use crate::language::Language;
 use crate::report::figure::svg::WIDTH;

@@ -3,6 +3,7 @@
 use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
+use crate::report::preview::Preview;
 
 /// Panels beside each other.
 const COLUMNS: usize = 2;
@@ -23,13 +24,14 @@ pub(crate) struct ScatterPanel<'a> {
     pub points: &'a [(String, f64, f64)],
 }
 
-/// A panel per measure over one scale of answers.
+/// A panel per measure over one scale of answers. Where there is a preview, each dot leads to its clip there.
 pub(crate) fn scatter(
     language: Language,
     id: &str,
     caption: &str,
     answer: &str,
     panels: &[ScatterPanel<'_>],
+    preview: Option<Preview<'_>>,
 ) -> Figure {
     let width = (WIDTH - LEFT - GAP * (COLUMNS - 1) as f64 - 10.0) / COLUMNS as f64;
     let rows = panels.len().div_ceil(COLUMNS);
@@ -60,8 +62,10 @@ pub(crate) fn scatter(
         }
         let title = clipped(&panel.title, (width / 5.4) as usize);
         svg.text(left + width / 2.0, bottom + 30.0, "small", Anchor::Middle, &title);
-        for (_, measured, mean) in panel.points {
-            svg.circle(x.place(*measured), y.place(*mean), 3.5, "dot");
+        for (stimulus, measured, mean) in panel.points {
+            let link = preview.map(|preview| preview.of_clip(language, stimulus));
+            let [x, y] = [x.place(*measured), y.place(*mean)];
+            svg.linked(link.as_ref(), |svg| svg.circle(x, y, 3.5, "dot"));
         }
     }
     let columns = language.pick(
@@ -98,13 +102,30 @@ mod tests {
             [("a".to_owned(), 0.5, 2.0), ("b".to_owned(), 1.5, 5.5), ("c".to_owned(), 1.0, 4.0)];
         let titles = ["Jerk (m/s³)", "RMSE (mm)", "Range (mm)"];
         let panels = titles.map(|title| ScatterPanel { title: title.to_owned(), points: &points });
-        let figure = scatter(Language::English, "f", "Answers and measures", "How real?", &panels);
+        let figure =
+            scatter(Language::English, "f", "Answers and measures", "How real?", &panels, None);
         assert_eq!(figure.svg.matches("class=\"dot\"").count(), 9);
+        assert!(figure.svg.contains("role=\"img\"") && !figure.svg.contains("<a "));
         assert_eq!(figure.data.rows.len(), 9);
         assert!(figure.alt.contains("Jerk (m/s³); RMSE (mm)"));
         let heights: Vec<f64> = (figure.svg.split("cy=\"").skip(1))
             .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
             .collect();
         assert!(heights[1] < heights[2] && heights[2] < heights[0], "{heights:?}");
+    }
+    #[test]
+    fn each_dot_leads_to_its_clip_where_there_is_a_preview() {
+        let points = [("joy1.box".to_owned(), 0.5, 2.0), ("a b&c".to_owned(), 1.5, 5.5)];
+        let panels = [ScatterPanel { title: "Jerk (m/s³)".to_owned(), points: &points }];
+        let preview = Some(Preview("https://lab.example/preview/study"));
+        let figure = scatter(Language::French, "f", "Réponses", "Réel ?", &panels, preview);
+        for link in [
+            r#"<a href="https://lab.example/preview/study?clip=joy1.box" class="clip" aria-label="Aperçu de joy1.box"><title>Aperçu de joy1.box</title>"#,
+            r#"<a href="https://lab.example/preview/study?clip=a%20b%26c" class="clip" aria-label="Aperçu de a b&amp;c">"#,
+        ] {
+            assert!(figure.svg.contains(link), "{}", figure.svg);
+        }
+        // What can be pressed is no picture, whose parts a screen reader does not tell.
+        assert!(figure.svg.contains("role=\"group\""));
     }
 }

@@ -16,8 +16,17 @@ pub struct Svg {
     body: String,
     height: f64,
     title: String,
-    /// Whether a part of it is played: what can be pressed is no picture.
-    is_playable: bool,
+    /// Whether a part of it can be pressed: it is no picture then.
+    has_controls: bool,
+}
+
+/// Where a mark leads.
+#[derive(Debug, Clone)]
+pub(crate) struct Link {
+    /// The address.
+    pub address: String,
+    /// What is found there.
+    pub title: String,
 }
 
 /// How the lines of a part of a drawing move.
@@ -45,7 +54,7 @@ pub enum Anchor {
 impl Svg {
     /// An empty drawing of a height; its title says what it shows.
     pub fn new(title: &str, height: f64) -> Self {
-        Self { body: String::new(), height, title: title.to_owned(), is_playable: false }
+        Self { body: String::new(), height, title: title.to_owned(), has_controls: false }
     }
 
     /// A line of text.
@@ -137,13 +146,26 @@ impl Svg {
 
     /// Begins a part that is played when it is pressed.
     pub(crate) fn begin_playable(&mut self, id: &str, label: &str) {
-        self.is_playable = true;
+        self.has_controls = true;
         let label = escape(label);
         let _ = writeln!(self.body, r##"<a href="#{id}" id="{id}" aria-label="{label}">"##);
     }
 
     /// Ends it.
     pub(crate) fn end_playable(&mut self) {
+        self.body.push_str("</a>\n");
+    }
+
+    /// What is drawn leads somewhere, where there is a link.
+    pub(crate) fn linked(&mut self, link: Option<&Link>, draw: impl FnOnce(&mut Self)) {
+        let Some(Link { address, title }) = link else { return draw(self) };
+        self.has_controls = true;
+        let (address, title) = (escape(address), escape(title));
+        let _ = writeln!(
+            self.body,
+            r#"<a href="{address}" class="clip" aria-label="{title}"><title>{title}</title>"#
+        );
+        draw(self);
         self.body.push_str("</a>\n");
     }
 
@@ -206,7 +228,7 @@ impl Svg {
 {body}</svg>
 "#,
             height = short(self.height),
-            role = if self.is_playable { "group" } else { "img" },
+            role = if self.has_controls { "group" } else { "img" },
             title = escape(&self.title),
             body = self.body
         )
@@ -269,13 +291,14 @@ const STYLE: &str = "\
 .mm-figure .thin{stroke:#0a4f86;stroke-width:1}\
 .mm-figure .box{fill:#cfe1f2;stroke:#0a4f86;stroke-width:1.5}\
 .mm-figure .empty{fill:none;stroke:#c9d0d8;stroke-width:1}\
+.mm-figure .clip:hover *,.mm-figure .clip:focus-visible *{fill-opacity:1;stroke:#0a4f86;stroke-width:3}\
 .mm-figure .outline{fill:none;stroke:#10151a;stroke-width:1.4}\
 @media screen and (prefers-color-scheme:dark){\
 .mm-figure text{fill:#e8ebee}.mm-figure .soft,.mm-figure .small{fill:#a9b2bc}\
 .mm-figure .on-dark{fill:#fff}.mm-figure .on-light{fill:#10151a}\
 .mm-figure .paper{fill:#15191e}.mm-figure .rule{stroke:#3a434d}.mm-figure .empty{stroke:#3a434d}\
 .mm-figure .zero{stroke:#a9b2bc}.mm-figure .whisker{stroke:#8cc4f2}.mm-figure .mark{fill:#8cc4f2}\
-.mm-figure .dot{fill:#8cc4f2}.mm-figure .person{stroke:#a9b2bc}.mm-figure .mean{stroke:#8cc4f2}.mm-figure .course,.mm-figure .thin{stroke:#8cc4f2}.mm-figure .box{fill:#1f4468;stroke:#8cc4f2}}";
+.mm-figure .dot{fill:#8cc4f2}.mm-figure .clip:hover *,.mm-figure .clip:focus-visible *{stroke:#8cc4f2}.mm-figure .person{stroke:#a9b2bc}.mm-figure .mean{stroke:#8cc4f2}.mm-figure .course,.mm-figure .thin{stroke:#8cc4f2}.mm-figure .box{fill:#1f4468;stroke:#8cc4f2}}";
 
 /// The colour of a shade from 0 (light) to 1 (dark).
 pub(crate) fn shade(shade: f64) -> String {

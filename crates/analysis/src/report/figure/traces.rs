@@ -4,21 +4,29 @@ use crate::language::Language;
 use crate::report::document::{DataTable, Figure};
 use crate::report::figure::courses::LINES;
 use crate::report::figure::people::{LEFT, RIGHT, vertical};
-use crate::report::figure::svg::{Anchor, Axis, Svg};
+use crate::report::figure::svg::{Anchor, Axis, Link, Svg};
 use crate::report::section::traces::MeanTrace;
 use crate::trials::measure::MeasureKind;
 
 /// Height of a pair's line of spans.
 const SPANS: f64 = 20.0;
 
-/// A line and its band for each level; the table has ten rows a second. Spans are seconds in which a named pair differs.
+/// Seconds in which two levels differ.
+pub(crate) struct TraceSpans {
+    /// The two levels.
+    pub pair: String,
+    /// From where to where, and where each leads.
+    pub spans: Vec<([f64; 2], Option<Link>)>,
+}
+
+/// A line and its band for each level; the table has ten rows a second.
 pub(crate) fn traces(
     language: Language,
     id: &str,
     caption: &str,
     step_seconds: f64,
     levels: &[(String, &MeanTrace)],
-    spans: &[(String, Vec<[f64; 2]>)],
+    spans: &[TraceSpans],
 ) -> Figure {
     let bands = || levels.iter().flat_map(|(_, own)| own.interval_95.iter().flatten().flatten());
     let means = || levels.iter().flat_map(|(_, own)| &own.mean);
@@ -53,13 +61,14 @@ pub(crate) fn traces(
         svg.coloured_path(&[[place, top - 22.0], [place + 18.0, top - 22.0]], line);
         svg.text(place + 24.0, top - 18.0, "small", Anchor::Start, name);
     }
-    for (place, (pair, own)) in spans.iter().enumerate() {
+    for (place, TraceSpans { pair, spans }) in spans.iter().enumerate() {
         let y = bottom + 46.0 + SPANS * place as f64;
         svg.text(LEFT, y, "small", Anchor::Start, pair);
-        for [from, to] in own {
+        for ([from, to], link) in spans {
             let (from, to) = (time.place(*from), time.place(*to));
             // A cluster of one instant is seen too.
-            svg.class_rect([from, y + 4.0, (to - from).max(2.0), 5.0], "mark");
+            let bar = [from, y + 4.0, (to - from).max(2.0), 5.0];
+            svg.linked(link.as_ref(), |svg| svg.class_rect(bar, "mark"));
         }
     }
     let seconds = language.pick("seconds", "secondes").to_owned();
@@ -84,7 +93,7 @@ pub(crate) fn traces(
         .collect();
     let different: Vec<String> = spans
         .iter()
-        .flat_map(|(pair, own)| own.iter().map(move |ends| (pair, ends)))
+        .flat_map(|own| own.spans.iter().map(|(ends, _)| (&own.pair, ends)))
         .map(|(pair, ends)| {
             let [from, to] = ends.map(|seconds| language.fixed(seconds, 1));
             format!(" {pair} {from} – {to} s.")

@@ -36,6 +36,7 @@ use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::report::ReportFile;
 use crate::report::document::{Block, DataTable, Document, Figure};
+use crate::report::preview::Preview;
 use crate::report::replay;
 use crate::report::results::Results;
 use crate::report::section::hypotheses::tested;
@@ -69,6 +70,8 @@ pub(crate) struct Writer<'a> {
     pub factors: Vec<String>,
     /// What was measured of the stimuli, where a table of it is given.
     pub stimuli: Option<&'a StimulusMeasures>,
+    /// Where single clips are seen.
+    pub preview: Option<Preview<'a>>,
 }
 
 /// Writes all sections.
@@ -76,6 +79,7 @@ pub(crate) fn write(
     export: &Export,
     study: &Study,
     stimuli: Option<&StimulusMeasures>,
+    preview: Option<Preview<'_>>,
     language: Language,
 ) -> Sections {
     let mut writer = Writer {
@@ -93,6 +97,7 @@ pub(crate) fn write(
         },
         factors: factors_in_use(export, study),
         stimuli,
+        preview,
     };
     let asked = export.questions(study).into_iter();
     let is_apart = |id: &str| study.is_asked_of_drawn_faces(id) || study.is_asked_of_scales(id);

@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::language::Language;
 use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::figure::{ScatterPanel, scatter};
+use crate::report::preview::Preview;
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::Measure;
@@ -91,7 +92,7 @@ impl Writer<'_> {
             let own: Vec<&MeasureCorrelation> =
                 found.iter().filter(|each| each.response == measure.id).collect();
             if !own.is_empty() {
-                self.figure(scattered(language, measure, &own));
+                self.figure(scattered(language, measure, &own, self.preview));
                 self.folded_table(correlation_table(language, measure, &own));
             }
         }
@@ -193,6 +194,7 @@ fn scattered(
     language: Language,
     measure: &Measure,
     correlations: &[&MeasureCorrelation],
+    preview: Option<Preview<'_>>,
 ) -> Figure {
     let whole = |each: &&&MeasureCorrelation| {
         !each.measure.starts_with(RANGE) || each.measure == "obj_range_mm_face"
@@ -205,7 +207,7 @@ fn scattered(
         format!("{} : réponse moyenne selon les mesures des stimuli", measure.label),
     );
     let id = format!("{}-against-measures", slug(&measure.id));
-    scatter(language, &id, &caption, &measure.label, &panels)
+    scatter(language, &id, &caption, &measure.label, &panels, preview)
 }
 
 /// A row per measure.

@@ -2,6 +2,7 @@
 //! time.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use mimique_stats::{ClusterPermutation, ClusterPermutationOptions, Outcome, cluster_permutation};
 use mimique_study::TRACE_HZ;
@@ -11,6 +12,7 @@ use serde::Serialize;
 use crate::hypothesis::reading::LEVEL;
 use crate::hypothesis::undefined::Why;
 use crate::report::document::{DataTable, slug};
+use crate::report::figure::TraceSpans;
 use crate::report::section::Writer;
 use crate::trials::measure::Measure;
 
@@ -101,19 +103,26 @@ fn correct(pairs: &mut [TracePair]) {
 }
 
 impl Writer<'_> {
-    /// Names of the pairs with their significant spans, seconds; pairs without one are left out.
+    /// The pairs with their significant spans, seconds; pairs without one are left out. A span of two levels of which
+    /// each has one clip leads to both of them; `clip_of` says the clip of such a level.
     pub(crate) fn significant_spans(
         &self,
         factor: &str,
         pairs: &[TracePair],
-    ) -> Vec<(String, Vec<[f64; 2]>)> {
-        let spans = |pair: &TracePair| -> Vec<[f64; 2]> {
+        clip_of: &BTreeMap<String, Arc<str>>,
+    ) -> Vec<TraceSpans> {
+        let of_pair = |pair: &TracePair| {
+            let clips = clip_of.get(&pair.a).zip(clip_of.get(&pair.b));
+            let link = |seconds: f64| {
+                let (preview, (a, b)) = self.preview.zip(clips)?;
+                Some(preview.of_pair(self.language(), [a, b], seconds))
+            };
             let significant = pair.spans.iter().filter(|span| span.p_corrected < LEVEL);
-            significant.map(|span| [span.from_s, span.to_s]).collect()
+            let spans =
+                significant.map(|span| ([span.from_s, span.to_s], link(span.from_s))).collect();
+            TraceSpans { pair: self.naming.pair(factor, &pair.a, &pair.b), spans }
         };
-        let named =
-            pairs.iter().map(|pair| (self.naming.pair(factor, &pair.a, &pair.b), spans(pair)));
-        named.filter(|(_, spans)| !spans.is_empty()).collect()
+        pairs.iter().map(of_pair).filter(|own| !own.spans.is_empty()).collect()
     }
 
     /// How it was tested, and every cluster.

@@ -1,6 +1,7 @@
 //! Ratings that follow the clip: their mean over people at each instant, by the factor that the study compares.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use mimique_stats::{Factor, t_quantile_upper};
 use mimique_study::TRACE_HZ;
@@ -63,13 +64,29 @@ impl Writer<'_> {
             format!("{} while the clip plays, by {shown}", measure.label),
             format!("{} pendant l’extrait, par {shown}", measure.label),
         );
-        let spans = self.significant_spans(name, &pairs);
+        let spans = self.significant_spans(name, &pairs, &self.only_clips(measure, &factor));
         let drawing = figure::traces(language, &id, &caption, 1.0 / TRACE_HZ, &lines, &spans);
         self.figure(drawing);
         self.trace_tests(measure, name, &pairs);
         let (response, factor) = (measure.id.clone(), name.clone());
         let step_seconds = 1.0 / TRACE_HZ;
         self.results.traces.push(MeanTraces { response, factor, step_seconds, levels, pairs });
+    }
+
+    /// The clip of each level that has one alone.
+    fn only_clips(&self, measure: &Measure, factor: &Factor) -> BTreeMap<String, Arc<str>> {
+        let mut clips: BTreeMap<String, BTreeSet<Arc<str>>> = BTreeMap::new();
+        for (answer, &code) in self.export.answers_to(&measure.id).iter().zip(&factor.codes) {
+            if let Some(level) = factor.levels.get(code as usize) {
+                let clip = self.export.trials[answer.trial].stimulus.clone();
+                clips.entry(level.clone()).or_default().insert(clip);
+            }
+        }
+        let only = |(level, own): (String, BTreeSet<Arc<str>>)| {
+            let one = own.len() == 1;
+            own.into_iter().next().filter(|_| one).map(|clip| (level, clip))
+        };
+        clips.into_iter().filter_map(only).collect()
     }
 
     /// The mean course of each person at a level: as long as the person's shortest.

@@ -34,7 +34,8 @@ pub(super) fn write(
         }
     }
     more("results.json".to_owned(), serde_json::to_string_pretty(&made.comparison)? + "\n");
-    report_folder::write(&files, folder).map_err(|e| blame(folder, e))
+    report_folder::write(&files, folder).map_err(|e| blame(folder, e))?;
+    Ok(())
 }
 
 fn document(args: &Make, made: &Made<'_, '_>, measures: &[Measures]) -> Document {

@@ -1,7 +1,7 @@
 //! `/researcher/people`: who has an account, and what each may do.
 
 use axum::extract::{Path, State};
-use axum::http::{HeaderMap, header};
+use axum::http::HeaderMap;
 use axum::response::Response;
 use mimique_storage::{LinkPurpose, Role, StudyRole};
 use serde::Deserialize;
@@ -14,7 +14,7 @@ use crate::accounts::identity::Researcher;
 use crate::accounts::links;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::http::responses::see;
+use crate::http::responses::{see, whole_address};
 use crate::researcher::pages::frame::Frame;
 use crate::researcher::pages::people::{Done, Everybody, people_page};
 use crate::state::App;
@@ -139,14 +139,4 @@ async fn everybodys_page(
         app.catalogue.studies().iter().map(|study| study.id().to_owned()).collect();
     let everybody = Everybody { accounts: &accounts, roles: &roles, studies: &studies };
     Ok(people_page(&Frame::new(app, who), &everybody, &tokens, done.as_ref()))
-}
-
-/// The address as people open it.
-fn whole_address(app: &App, headers: &HeaderMap, path: &str) -> String {
-    if let Some(url) = &app.access.public_url {
-        return format!("{}{path}", url.trim_end_matches('/'));
-    }
-    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok()).unwrap_or_default();
-    let scheme = if app.is_encrypted() { "https" } else { "http" };
-    format!("{scheme}://{host}{path}")
 }

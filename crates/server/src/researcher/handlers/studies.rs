@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use axum::extract::{Path, State};
-use axum::http::{HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
 use mimique_analysis::Language;
 use mimique_session::Standing;
@@ -20,7 +20,7 @@ use crate::clock::now_ms;
 use crate::error::Error;
 use crate::export::{self, Cells, Export, Format, Options};
 use crate::http::extract::Asked;
-use crate::http::responses::{attachment, see};
+use crate::http::responses::{attachment, see, whole_address};
 use crate::participant::withdrawal::withdrawal_hash;
 use crate::researcher::dashboard::overview::{Notice, Overview, Person, Wanted};
 use crate::researcher::pages::frame::Frame;
@@ -94,7 +94,7 @@ fn standing_of(word: &str) -> Result<Standing, Error> {
 }
 
 /// A study in which somebody may do so much.
-fn visible(
+pub(super) fn visible(
     app: &App,
     who: &Researcher,
     id: &str,
@@ -248,7 +248,7 @@ async fn change_exclusion(
     Ok(see(&format!("/researcher/studies/{}/participants/{number}", study.id())))
 }
 
-async fn session(app: &App, study: &str, number: u64) -> Result<SessionRecord, Error> {
+pub(super) async fn session(app: &App, study: &str, number: u64) -> Result<SessionRecord, Error> {
     match app.storage.participant_session(study, number).await {
         Err(StorageError::UnknownSession) => Err(Error::NotFound),
         found => Ok(found?),
@@ -302,11 +302,17 @@ pub(crate) async fn export(
 pub(crate) async fn report(
     State(app): State<App>,
     Path((id, code, name)): Path<(String, String, String)>,
+    headers: HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
     let study = visible(&app, &who, &id, Role::Analyst)?;
     let language = Language::from_code(&code).ok_or(Error::NotFound)?;
-    let report = app.reports.get(&app.storage, &study, language).await?;
+    let mut preview = format!("/preview/{}", study.id());
+    if name != "report.html" {
+        // A report that is saved leads here, too.
+        preview = whole_address(&app, &headers, &preview);
+    }
+    let report = app.reports.get(&app.storage, &study, language, &preview).await?;
     if name == "report.zip" {
         let files: Vec<_> = report
             .files

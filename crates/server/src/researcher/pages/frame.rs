@@ -57,6 +57,11 @@ impl Frame {
 
     /// The whole page. `address` is the page's own, for the change of language.
     pub fn page(&self, title: &str, address: &str, body: &Markup) -> Response {
+        self.page_with(title, address, &html! {}, body)
+    }
+
+    /// The same with more in its head: scripts and styles of its own.
+    pub fn page_with(&self, title: &str, address: &str, head: &Markup, body: &Markup) -> Response {
         let nav = html! {
             a href="/researcher" { (self.say("Studies", "Études")) }
             @if self.in_all >= Role::Owner {
@@ -69,7 +74,8 @@ impl Frame {
                 button.quiet type="submit" { (self.say("Log out", "Se déconnecter")) }
             }
         };
-        answer(document(&self.assets, self.language, title, address, &nav, body))
+        let parts = Parts { head, nav: &nav, body };
+        answer(document(&self.assets, self.language, title, address, &parts))
     }
 }
 
@@ -81,7 +87,8 @@ pub(crate) fn open_page(
     address: &str,
     body: &Markup,
 ) -> Response {
-    answer(document(assets, language, title, address, &html! {}, body))
+    let parts = Parts { head: &html! {}, nav: &html! {}, body };
+    answer(document(assets, language, title, address, &parts))
 }
 
 /// HTML whose forms tell where they come from: without that no form could be told from a forged one.
@@ -89,13 +96,19 @@ fn answer(page: Markup) -> Response {
     ([(header::REFERRER_POLICY, "same-origin")], Html(page.into_string())).into_response()
 }
 
+/// What differs from page to page.
+struct Parts<'p> {
+    head: &'p Markup,
+    nav: &'p Markup,
+    body: &'p Markup,
+}
+
 fn document(
     assets: &str,
     language: Language,
     title: &str,
     address: &str,
-    nav: &Markup,
-    body: &Markup,
+    Parts { head, nav, body }: &Parts<'_>,
 ) -> Markup {
     let (other, name) = language.pick(("fr", "Français"), ("en", "English"));
     html! {
@@ -111,6 +124,7 @@ fn document(
                 link rel="stylesheet" href={ (assets) "/style/style.css" };
                 link rel="stylesheet" href={ (assets) "/researcher/researcher.css" };
                 script type="module" src={ (assets) "/researcher/researcher.js" } {}
+                (head)
             }
             body {
                 a.skip-link href="#main" { (language.pick("To the content", "Au contenu")) }
@@ -190,7 +204,7 @@ pub(crate) fn day(at_ms: i64) -> Markup {
 
 /// A text as part of an address's query.
 pub(crate) fn escaped(text: &str) -> String {
-    crate::state::hosted_study::percent_encoded(text)
+    mimique_study::percent_encoded(text)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ pub(crate) mod frame;
 pub(crate) mod home;
 pub(crate) mod participant;
 pub(crate) mod people;
+pub(crate) mod replay;
 pub(crate) mod standing_words;
 pub(crate) mod study;
 mod study_roles;

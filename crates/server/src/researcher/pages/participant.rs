@@ -88,6 +88,13 @@ pub(crate) fn participant_page(frame: &Frame, shown: &Shown<'_>) -> Response {
                 div { dt { (frame.say("Browser", "Navigateur")) } dd { (browser(&session.client)) } }
                 div { dt { "Version" } dd { code { (session.config_hash.get(..12).unwrap_or_default()) } } }
             }
+            @if frame.may(Role::Analyst) && !shown.events.is_empty() {
+                p {
+                    a href={ (address) "/replay" } {
+                        (frame.say("Replay: what this person saw", "Revoir : ce que cette personne a vu"))
+                    }
+                }
+            }
         }
         (exclusion(frame, shown, &address))
         (timeline(frame, shown))

@@ -64,8 +64,8 @@ fn summed(frame: &Frame, caption: &Markup, count: &Markup, numbers: &Numbers) ->
         div {
             p.caption { (caption) }
             p lang=(frame.language.code()) {
-                (count) ", " (round(numbers.least)) " – " (round(numbers.greatest)) ", "
-                (frame.say("mean", "moyenne")) " " (round(numbers.sum / numbers.count as f64))
+                (count) ", " (round(frame.language, numbers.least)) " – " (round(frame.language, numbers.greatest)) ", "
+                (frame.say("mean", "moyenne")) " " (round(frame.language, numbers.sum / numbers.count as f64))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Counts as bars, and numbers as they are written beside them.
 
 use maud::{Markup, html};
+use mimique_analysis::Language;
 
 /// Counts under the name of a factor.
 pub(super) fn bars<'a>(caption: &str, counts: impl Iterator<Item = (&'a str, u64)>) -> Markup {
@@ -30,20 +31,26 @@ pub(super) fn bars_with<'a>(
     }
 }
 
-/// A number with two decimals at most.
-pub(super) fn round(value: f64) -> String {
+/// A number with two decimals at most, as attributes have it.
+pub(super) fn plain(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
+/// The same with the reader's decimal mark.
+pub(super) fn round(language: Language, value: f64) -> String {
+    language.pick(plain(value), plain(value).replace('.', ","))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::round;
+    use super::{Language, plain, round};
 
     #[test]
     fn numbers_are_written_without_idle_digits() {
-        assert_eq!(round(2.0), "2");
-        assert_eq!(round(2.126), "2.13");
-        assert_eq!(round(0.5), "0.5");
+        assert_eq!(plain(2.0), "2");
+        assert_eq!(plain(2.126), "2.13");
+        assert_eq!(round(Language::English, 0.5), "0.5");
+        assert_eq!(round(Language::French, 6531.64), "6531,64");
     }
 }

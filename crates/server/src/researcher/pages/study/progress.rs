@@ -28,7 +28,7 @@ pub(super) fn pace(frame: &Frame, pace: &Pace) -> Markup {
                 " " progress aria-hidden="true" max=(wanted.max(1)) value=(done.min(wanted)) {}
             }
             @if let Some(per_day) = per_day {
-                (frame.say("; lately ", " ; dernièrement ")) (round(per_day)) (frame.say(" per day", " par jour"))
+                (frame.say("; lately ", " ; dernièrement ")) (round(frame.language, per_day)) (frame.say(" per day", " par jour"))
             }
             @if let Some(full_ms) = full_ms {
                 (frame.say(": full about ", " : complète vers le ")) (day(full_ms))

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::bars::{bars, round};
+use super::bars::{bars, plain, round};
 use crate::researcher::dashboard::figures::Times;
 use crate::researcher::dashboard::overview::Overview;
 use crate::researcher::pages::frame::Frame;
@@ -50,9 +50,9 @@ pub(super) fn times(frame: &Frame, times: &[Times]) -> Markup {
                                     th scope="row" {
                                         @if row.number == 0 { (frame.say("all", "tous")) } @else { (row.number) }
                                     }
-                                    td.bar { progress aria-hidden="true" max=(round(most)) value=(round(row.median_s)) {} }
-                                    td.number { (round(row.median_s)) " s" }
-                                    td.number { (round(row.low_s)) "–" (round(row.high_s)) " s" }
+                                    td.bar { progress aria-hidden="true" max=(plain(most)) value=(plain(row.median_s)) {} }
+                                    td.number { (round(frame.language, row.median_s)) " s" }
+                                    td.number { (round(frame.language, row.low_s)) "–" (round(frame.language, row.high_s)) " s" }
                                     td.number { (row.count) }
                                 }
                             }
@@ -89,7 +89,7 @@ pub(super) fn frames(frame: &Frame, overview: &Overview) -> Markup {
                                     td.number { (row.people) }
                                     td.number { (row.frames) }
                                     td.number { (row.late) }
-                                    td.number { (round(100.0 * row.late as f64 / row.frames.max(1) as f64)) " %" }
+                                    td.number { (round(frame.language, 100.0 * row.late as f64 / row.frames.max(1) as f64)) " %" }
                                 }
                             }
                         }
