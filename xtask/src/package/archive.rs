@@ -16,8 +16,13 @@ pub fn make(program: &Program, out: &Path) -> Result<PathBuf> {
     let mut whole = vec![File::program(target.program(), program.bytes.clone())];
     whole.extend(readme_and_demo()?);
     whole.extend(program.terms.files());
-    let whole: Vec<File> = whole.into_iter().map(|file| file.within(&target.archive_stem())).collect();
-    let bytes = if target.is_windows() { files::zip(&whole)? } else { files::gzip(&files::tar(&[], &whole)?)? };
+    let whole: Vec<File> =
+        whole.into_iter().map(|file| file.within(&target.archive_stem())).collect();
+    let bytes = if target.is_windows() {
+        files::zip(&whole)?
+    } else {
+        files::gzip(&files::tar(&[], &whole)?)?
+    };
     let path = out.join(target.archive());
     std::fs::write(&path, bytes).with_context(|| path.display().to_string())?;
     Ok(path)
@@ -28,5 +33,9 @@ pub fn check(program: &Program, archive: &Path, work: &Path) -> Result<Tried> {
     std::fs::create_dir_all(work)?;
     check::answer(std::process::Command::new("tar").arg("-xf").arg(archive).current_dir(work))?;
     let folder = work.join(program.target.archive_stem());
-    check::placed(&Placed { program, path: &folder.join(program.target.program()), study: &folder.join(DEMO) })
+    check::placed(&Placed {
+        program,
+        path: &folder.join(program.target.program()),
+        study: &folder.join(DEMO),
+    })
 }

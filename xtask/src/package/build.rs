@@ -26,7 +26,9 @@ pub fn program(target: &Target) -> Result<std::result::Result<PathBuf, String>> 
     let mut command = cargo();
     if target.is_linux() {
         let tools = match python()? {
-            Ok(interpreter) => interpreter.parent().context("an interpreter lies in a folder")?.to_owned(),
+            Ok(interpreter) => {
+                interpreter.parent().context("an interpreter lies in a folder")?.to_owned()
+            }
             Err(remedy) => return Ok(Err(format!("no zig: {remedy}"))),
         };
         command.arg("zigbuild").env("PATH", with_first(&tools)?);

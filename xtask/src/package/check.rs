@@ -26,7 +26,11 @@ pub struct Placed<'a> {
 /// by an emulator, version and check alone.
 pub fn placed(placed: &Placed) -> Result<Tried> {
     let found = super::files::read(placed.path)?;
-    ensure!(found == placed.program.bytes, "{}: another program than was packed", placed.path.display());
+    ensure!(
+        found == placed.program.bytes,
+        "{}: another program than was packed",
+        placed.path.display()
+    );
     let runner = placed.program.target.runner();
     let start = || runner.command(placed.path).map_err(|why| anyhow::anyhow!("{why}"));
     let study = placed.study.to_string_lossy();
@@ -41,21 +45,33 @@ pub fn placed(placed: &Placed) -> Result<Tried> {
             says_version_and_checks(&start, &study)?;
             Ok(Tried::InPart(format!("run by {emulator}: version and check, not the server")))
         }
-        Runner::No(why) => Ok(Tried::InPart(format!("it holds the right program, which was not run: {why}"))),
+        Runner::No(why) => {
+            Ok(Tried::InPart(format!("it holds the right program, which was not run: {why}")))
+        }
     }
 }
 
 /// `mimique --version` and `mimique check`.
 pub fn says_version_and_checks(start: &dyn Fn() -> Result<Command>, study: &str) -> Result<()> {
     let said = answer(start()?.arg("--version"))?;
-    ensure!(said.trim() == format!("{NAME} {VERSION}"), "--version: {said:?} instead of {NAME} {VERSION}");
+    ensure!(
+        said.trim() == format!("{NAME} {VERSION}"),
+        "--version: {said:?} instead of {NAME} {VERSION}"
+    );
     answer(start()?.args(["check", study]))?;
     Ok(())
 }
 
 /// `mimique serve` on loopback, asked whether it lives and for the participant's page, which is embedded in it.
 pub fn serves(serve: &mut Command, study: &str, data: &str) -> Result<()> {
-    serve.args(["serve", study, "--database", &format!("sqlite:{data}/answers.sqlite"), "--data-dir", data]);
+    serve.args([
+        "serve",
+        study,
+        "--database",
+        &format!("sqlite:{data}/answers.sqlite"),
+        "--data-dir",
+        data,
+    ]);
     let (server, _) = Server::start(serve)?;
     let (_, page) = server.read("/s/demo/")?;
     ensure!(page.contains("<html"), "/s/demo/: no page: {page}");

@@ -26,7 +26,8 @@ pub struct Terms {
 impl Terms {
     /// Of the program of a target.
     pub fn of_program(target: &Target) -> Result<Self> {
-        let roots: Vec<Root> = PAGES.iter().map(|name| (*name, WASM)).chain([(NAME, target.triple)]).collect();
+        let roots: Vec<Root> =
+            PAGES.iter().map(|name| (*name, WASM)).chain([(NAME, target.triple)]).collect();
         Self::of(NAME, target.triple, &dependencies::of(&roots)?)
     }
 
@@ -54,5 +55,8 @@ impl Terms {
 
 /// The page that a package opens with, and the demonstration's study.
 pub fn readme_and_demo() -> Result<Vec<File>> {
-    Ok(vec![File::of_repository("README.md", "xtask/package/README.md")?, File::of_repository(DEMO, DEMO)?])
+    Ok(vec![
+        File::of_repository("README.md", "xtask/package/README.md")?,
+        File::of_repository(DEMO, DEMO)?,
+    ])
 }

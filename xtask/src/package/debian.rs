@@ -24,7 +24,8 @@ pub fn make(program: &Program, out: &Path, work: &Path) -> Result<PathBuf> {
     let architecture = program.target.architecture.context("Debian packages are of Linux alone")?;
     let mut whole = vec![File::program(format!("usr/bin/{NAME}"), program.bytes.clone())];
     for file in readme_and_demo()? {
-        let folder = if file.name == DEMO { format!("usr/share/{NAME}") } else { DOCUMENTS.to_owned() };
+        let folder =
+            if file.name == DEMO { format!("usr/share/{NAME}") } else { DOCUMENTS.to_owned() };
         whole.push(file.within(&folder));
     }
     whole.extend(program.terms.files().into_iter().map(|file| file.within(DOCUMENTS)));
@@ -64,7 +65,11 @@ fn copyright() -> String {
 /// Installs it by dpkg below a folder that stands for the whole system, and runs the program.
 pub fn check(program: &Program, package: &Path, work: &Path) -> Result<Tried> {
     let architecture = program.target.architecture.context("Debian packages are of Linux alone")?;
-    let said = answer(Command::new("dpkg-deb").arg("--field").arg(package).args(["Package", "Version", "Architecture"]))?;
+    let said = answer(Command::new("dpkg-deb").arg("--field").arg(package).args([
+        "Package",
+        "Version",
+        "Architecture",
+    ]))?;
     let expected = format!("Package: {NAME}\nVersion: {VERSION}\nArchitecture: {architecture}\n");
     ensure!(said == expected, "{}: {said:?} instead of {expected:?}", package.display());
     let system = work.join("system");
@@ -73,7 +78,9 @@ pub fn check(program: &Program, package: &Path, work: &Path) -> Result<Tried> {
     }
     std::fs::write(system.join("var/lib/dpkg/status"), "")?;
     let mut install = Command::new("dpkg");
-    install.arg(format!("--root={}", system.display())).args(["--force-not-root", "--force-architecture"]);
+    install
+        .arg(format!("--root={}", system.display()))
+        .args(["--force-not-root", "--force-architecture"]);
     answer(install.arg("--install").arg(package))?;
     let study = system.join("usr/share").join(NAME).join(DEMO);
     check::placed(&Placed { program, path: &system.join("usr/bin").join(NAME), study: &study })
@@ -86,10 +93,15 @@ mod tests {
     #[test]
     fn the_control_file_has_what_dpkg_asks_for() {
         let text = control("arm64", 7);
-        for line in ["Package: mimique", "Architecture: arm64", "Installed-Size: 7", "Priority: optional"] {
+        for line in
+            ["Package: mimique", "Architecture: arm64", "Installed-Size: 7", "Priority: optional"]
+        {
             assert!(text.lines().any(|found| found == line), "{line}: {text}");
         }
-        assert!(text.contains(&format!("\nVersion: {VERSION}\n")) && text.ends_with('\n'), "{text}");
+        assert!(
+            text.contains(&format!("\nVersion: {VERSION}\n")) && text.ends_with('\n'),
+            "{text}"
+        );
         // Lines that go on begin with a space.
         let after = text.split_once("\nDescription: ").unwrap().1;
         assert!(after.lines().skip(1).all(|line| line.starts_with(' ')), "{after}");

@@ -13,8 +13,13 @@ use crate::process::{cargo, output, root};
 pub type Root = (&'static str, &'static str);
 
 /// The crates of the pages, which the program has embedded.
-pub const PAGES: [&str; 5] =
-    ["mimique-app", "mimique-web-adaptive", "mimique-web-solver", "mimique-web-stage", "mimique-web-studio"];
+pub const PAGES: [&str; 5] = [
+    "mimique-app",
+    "mimique-web-adaptive",
+    "mimique-web-solver",
+    "mimique-web-stage",
+    "mimique-web-studio",
+];
 /// The crates of the npm package.
 pub const STAGE: [&str; 3] = ["mimique-web-adaptive", "mimique-web-solver", "mimique-web-stage"];
 /// The target of the pages.
@@ -53,7 +58,8 @@ pub fn key(name: &str, version: &str) -> String {
 
 /// Everything under these roots that ends up in a program: dependencies of builds and tests do not.
 pub fn of(roots: &[Root]) -> Result<Components> {
-    let checksums = checksums(&std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock")?);
+    let checksums =
+        checksums(&std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock")?);
     let targets: BTreeSet<&str> = roots.iter().map(|(_, target)| *target).collect();
     let mut found = Components::new();
     for target in targets {
@@ -67,12 +73,21 @@ pub fn of(roots: &[Root]) -> Result<Components> {
 fn metadata(target: &str) -> Result<Value> {
     let ask = |offline: &[&str]| {
         let mut command = cargo();
-        command.args(["metadata", "--format-version", "1", "--locked", "--filter-platform", target]);
+        command.args([
+            "metadata",
+            "--format-version",
+            "1",
+            "--locked",
+            "--filter-platform",
+            target,
+        ]);
         output(command.args(offline))
     };
     // A crate that nothing here compiles may not have been fetched yet.
     let text = ask(&["--offline"]).or_else(|| ask(&[]));
-    let text = text.with_context(|| format!("cargo metadata --locked --filter-platform {target} fails; run it"))?;
+    let text = text.with_context(|| {
+        format!("cargo metadata --locked --filter-platform {target} fails; run it")
+    })?;
     Ok(serde_json::from_str(&text)?)
 }
 
@@ -85,18 +100,27 @@ fn add<'n>(
 ) -> Result<()> {
     let list = |value: &'_ Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let packages: BTreeMap<String, Value> =
-        list(&metadata["packages"]).into_iter().map(|package| (text(&package["id"]), package)).collect();
-    let nodes: BTreeMap<String, Value> =
-        list(&metadata["resolve"]["nodes"]).into_iter().map(|node| (text(&node["id"]), node)).collect();
+    let packages: BTreeMap<String, Value> = list(&metadata["packages"])
+        .into_iter()
+        .map(|package| (text(&package["id"]), package))
+        .collect();
+    let nodes: BTreeMap<String, Value> = list(&metadata["resolve"]["nodes"])
+        .into_iter()
+        .map(|node| (text(&node["id"]), node))
+        .collect();
     let key_of = |id: &str| {
-        let package = packages.get(id).with_context(|| format!("cargo metadata: no package {id}"))?;
+        let package =
+            packages.get(id).with_context(|| format!("cargo metadata: no package {id}"))?;
         anyhow::Ok(key(&text(&package["name"]), &text(&package["version"])))
     };
     let mut open = Vec::new();
     for name in roots {
-        let own = packages.iter().find(|(_, package)| package["name"] == name && package["source"].is_null());
-        let Some((id, _)) = own else { bail!("cargo metadata: no crate of the workspace is called {name}") };
+        let own = packages
+            .iter()
+            .find(|(_, package)| package["name"] == name && package["source"].is_null());
+        let Some((id, _)) = own else {
+            bail!("cargo metadata: no crate of the workspace is called {name}")
+        };
         open.push(id.clone());
     }
     let mut walked = BTreeSet::new();
@@ -107,7 +131,8 @@ fn add<'n>(
         let package = &packages[&id];
         let mut depends = BTreeSet::new();
         for dependency in list(&nodes[&id]["deps"]) {
-            let is_normal = list(&dependency["dep_kinds"]).iter().any(|kind| kind["kind"].is_null());
+            let is_normal =
+                list(&dependency["dep_kinds"]).iter().any(|kind| kind["kind"].is_null());
             if is_normal {
                 let other = text(&dependency["pkg"]);
                 depends.insert(key_of(&other)?);
@@ -134,8 +159,12 @@ fn add<'n>(
 /// The standard library, and on Linux the C library: no lock file names them.
 fn add_of_compiler(found: &mut Components, target: &str) -> Result<()> {
     let version = output(std::process::Command::new("rustc").arg("-vV").current_dir(root()));
-    let version = version.context("rustc -vV fails; install the toolchain of rust-toolchain.toml")?;
-    let version = version.lines().find_map(|line| line.strip_prefix("release: ")).context("rustc -vV: no release")?;
+    let version =
+        version.context("rustc -vV fails; install the toolchain of rust-toolchain.toml")?;
+    let version = version
+        .lines()
+        .find_map(|line| line.strip_prefix("release: "))
+        .context("rustc -vV: no release")?;
     let mut insert = |name: &str, version: &str, licence: &str, author: &str, repository: &str| {
         let component = Component {
             name: name.into(),
@@ -151,7 +180,13 @@ fn add_of_compiler(found: &mut Components, target: &str) -> Result<()> {
     insert("rust-std", version, "MIT OR Apache-2.0", "The Rust Project contributors", rust);
     if target.ends_with("-musl") {
         // The one that rustc 1.93 and later brings along.
-        insert("musl", "1.2.5", "MIT", "2005-2020 Rich Felker, et al.", "https://git.musl-libc.org/cgit/musl");
+        insert(
+            "musl",
+            "1.2.5",
+            "MIT",
+            "2005-2020 Rich Felker, et al.",
+            "https://git.musl-libc.org/cgit/musl",
+        );
     }
     Ok(())
 }
@@ -177,10 +212,13 @@ mod tests {
     #[test]
     fn the_program_is_made_of_its_crates_and_of_those_of_the_pages() {
         let linux = "x86_64-unknown-linux-musl";
-        let roots: Vec<Root> = PAGES.iter().map(|name| (*name, WASM)).chain([("mimique", linux)]).collect();
+        let roots: Vec<Root> =
+            PAGES.iter().map(|name| (*name, WASM)).chain([("mimique", linux)]).collect();
         let found = of(&roots).unwrap();
         let named = |name: &str| found.values().find(|component| component.name == name);
-        for name in ["mimique", "mimique-server", "sqlx-sqlite", "wgpu", "web-sys", "rust-std", "musl"] {
+        for name in
+            ["mimique", "mimique-server", "sqlx-sqlite", "wgpu", "web-sys", "rust-std", "musl"]
+        {
             assert!(named(name).is_some(), "{name}");
         }
         // Tests and builds alone need these.
@@ -190,6 +228,10 @@ mod tests {
         let serde = named("serde").unwrap();
         assert_eq!(serde.checksum.as_ref().map(String::len), Some(64));
         assert!(!serde.is_own && named("mimique-server").unwrap().is_own);
-        assert!(found.values().all(|component| component.depends.iter().all(|key| found.contains_key(key))));
+        assert!(
+            found
+                .values()
+                .all(|component| component.depends.iter().all(|key| found.contains_key(key)))
+        );
     }
 }

@@ -104,7 +104,8 @@ fn set_mode(_: &Path, _: u32) -> Result<()> {
 /// The time of every file in a package, seconds since 1970: `SOURCE_DATE_EPOCH`, else that of the commit, else 1980,
 /// the first year of zip.
 pub fn epoch() -> u64 {
-    let commit = || output(Command::new("git").args(["log", "-1", "--format=%ct"]).current_dir(root()));
+    let commit =
+        || output(Command::new("git").args(["log", "-1", "--format=%ct"]).current_dir(root()));
     let text = std::env::var("SOURCE_DATE_EPOCH").ok().or_else(commit);
     text.and_then(|text| text.trim().parse().ok()).unwrap_or(315_532_800)
 }
@@ -142,7 +143,9 @@ pub fn tar(folders: &[Folder], files: &[File]) -> Result<Vec<u8>> {
     }
     for file in files {
         let mut header = header(file.mode(), file.bytes.len() as u64, tar::EntryType::Regular);
-        archive.append_data(&mut header, &file.name, file.bytes.as_slice()).with_context(|| file.name.clone())?;
+        archive
+            .append_data(&mut header, &file.name, file.bytes.as_slice())
+            .with_context(|| file.name.clone())?;
     }
     Ok(archive.into_inner()?)
 }
@@ -193,8 +196,10 @@ mod tests {
                 (path, header.mode().unwrap(), header.uid().unwrap(), text)
             })
             .collect();
-        let expected = [("data/", 0o750, 7, ""), ("a/run", 0o755, 0, "#!"), ("a/b/read", 0o644, 0, "words")];
-        let expected = expected.map(|(path, mode, owner, text)| (path.to_owned(), mode, owner, text.to_owned()));
+        let expected =
+            [("data/", 0o750, 7, ""), ("a/run", 0o755, 0, "#!"), ("a/b/read", 0o644, 0, "words")];
+        let expected = expected
+            .map(|(path, mode, owner, text)| (path.to_owned(), mode, owner, text.to_owned()));
         assert_eq!(found, expected);
 
         let packed = zip(&files).unwrap();

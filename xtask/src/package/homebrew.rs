@@ -20,7 +20,8 @@ const FILE: &str = "mimique.rb";
 pub fn make(out: &Path) -> Result<Tried> {
     let sums = Sums::of(out)?;
     std::fs::write(path(out), formula(&sums)?).context(FILE)?;
-    let missing: Vec<String> = of_homebrew().map(Target::archive).filter(|name| sums.get(name).is_none()).collect();
+    let missing: Vec<String> =
+        of_homebrew().map(Target::archive).filter(|name| sums.get(name).is_none()).collect();
     if missing.is_empty() {
         return Ok(Tried::Done);
     }
@@ -42,7 +43,9 @@ fn of_homebrew() -> impl Iterator<Item = &'static Target> {
 
 fn formula(sums: &Sums) -> Result<String> {
     let mut downloads = String::new();
-    for (system, is_of_system) in [("macos", Target::is_macos as fn(&Target) -> bool), ("linux", Target::is_linux)] {
+    for (system, is_of_system) in
+        [("macos", Target::is_macos as fn(&Target) -> bool), ("linux", Target::is_linux)]
+    {
         let mut of_system = String::new();
         for target in of_homebrew().filter(|target| is_of_system(target)) {
             let archive = target.archive();
@@ -59,7 +62,9 @@ fn formula(sums: &Sums) -> Result<String> {
         }
     }
     if downloads.is_empty() {
-        bail!("{FILE}: no archive is there; make them first (`cargo xtask package --only archive,homebrew`)");
+        bail!(
+            "{FILE}: no archive is there; make them first (`cargo xtask package --only archive,homebrew`)"
+        );
     }
     Ok(format!(
         r##"class Mimique < Formula
@@ -99,14 +104,22 @@ mod tests {
     #[test]
     fn the_formula_names_every_archive_that_is_there() {
         let archives: Vec<String> = of_homebrew().map(Target::archive).collect();
-        let sums = Sums::from_iter(archives.iter().enumerate().map(|(k, name)| (name.clone(), format!("{k:064}"))));
+        let sums = Sums::from_iter(
+            archives.iter().enumerate().map(|(k, name)| (name.clone(), format!("{k:064}"))),
+        );
         let text = formula(&sums).unwrap();
         for (k, name) in archives.iter().enumerate() {
             let pair = format!("url \"{}\"\n      sha256 \"{k:064}\"", release_address(name));
             assert!(text.contains(&pair), "{pair}\n{text}");
         }
-        assert!(text.contains(&format!("version \"{VERSION}\"")) && text.contains("#{bin}/mimique --version"));
-        assert_eq!(text.matches(" do\n").count() + text.matches("def ").count() + 1, text.matches("end\n").count());
+        assert!(
+            text.contains(&format!("version \"{VERSION}\""))
+                && text.contains("#{bin}/mimique --version")
+        );
+        assert_eq!(
+            text.matches(" do\n").count() + text.matches("def ").count() + 1,
+            text.matches("end\n").count()
+        );
     }
 
     #[test]

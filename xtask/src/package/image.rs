@@ -30,13 +30,17 @@ pub fn make(program: &Program, out: &Path) -> Result<PathBuf> {
     let architecture = program.target.architecture.context("images are of Linux alone")?;
     let path = out.join(format!("{NAME}-{VERSION}-image-{architecture}.tar"));
     let layer = files::tar(&folders(), &whole(program)?)?;
-    std::fs::write(&path, files::tar(&[], &layout(architecture, &layer)?)?).with_context(|| path.display().to_string())?;
+    std::fs::write(&path, files::tar(&[], &layout(architecture, &layer)?)?)
+        .with_context(|| path.display().to_string())?;
     Ok(path)
 }
 
 /// Folders that the program writes into.
 fn folders() -> [Folder; 2] {
-    [Folder { name: "tmp", mode: 0o1777, owner: 0 }, Folder { name: DATA, mode: 0o755, owner: USER }]
+    [
+        Folder { name: "tmp", mode: 0o1777, owner: 0 },
+        Folder { name: DATA, mode: 0o755, owner: USER },
+    ]
 }
 
 /// The files of the image's only layer.
@@ -49,7 +53,8 @@ fn whole(program: &Program) -> Result<Vec<File>> {
         File::program(format!("usr/local/bin/{NAME}"), program.bytes.clone()),
     ];
     whole.extend(readme_and_demo()?.into_iter().map(|file| file.within("usr/share/mimique")));
-    whole.extend(program.terms.files().into_iter().map(|file| file.within("usr/share/doc/mimique")));
+    whole
+        .extend(program.terms.files().into_iter().map(|file| file.within("usr/share/doc/mimique")));
     Ok(whole)
 }
 
@@ -81,7 +86,8 @@ fn layout(architecture: &str, layer: &[u8]) -> Result<Vec<File>> {
         "mediaType": "application/vnd.oci.image.index.v1+json",
         "manifests": [listed],
     });
-    let place = |descriptor: &Value| descriptor["digest"].as_str().unwrap_or_default().replace(':', "/");
+    let place =
+        |descriptor: &Value| descriptor["digest"].as_str().unwrap_or_default().replace(':', "/");
     let for_docker = json!([{
         "Config": format!("blobs/{}", place(&configuration)),
         "RepoTags": [format!("{NAME}:{VERSION}")],
@@ -127,7 +133,11 @@ pub fn check(program: &Program, image: &Path, work: &Path) -> Result<Tried> {
     std::fs::create_dir_all(&unpacked)?;
     answer(Command::new("tar").arg("-xf").arg(image).current_dir(&unpacked))?;
     for file in files::below(&unpacked.join("blobs/sha256"))? {
-        ensure!(hex::encode(Sha256::digest(&file.bytes)) == file.name, "{}: a blob of another hash", file.name);
+        ensure!(
+            hex::encode(Sha256::digest(&file.bytes)) == file.name,
+            "{}: a blob of another hash",
+            file.name
+        );
     }
     let list: Value = serde_json::from_slice(&files::read(&unpacked.join("manifest.json"))?)?;
     let layer = list[0]["Layers"][0].as_str().context("manifest.json: no layer")?;
@@ -135,7 +145,11 @@ pub fn check(program: &Program, image: &Path, work: &Path) -> Result<Tried> {
     std::fs::create_dir_all(&system)?;
     answer(Command::new("tar").arg("-xzf").arg(unpacked.join(layer)).current_dir(&system))?;
     let path = system.join("usr/local/bin").join(NAME);
-    let ran = check::placed(&Placed { program, path: &path, study: &system.join("usr/share/mimique").join(DEMO) })?;
+    let ran = check::placed(&Placed {
+        program,
+        path: &path,
+        study: &system.join("usr/share/mimique").join(DEMO),
+    })?;
     if !matches!(program.target.runner(), Runner::Directly) {
         return Ok(ran);
     }
@@ -148,7 +162,10 @@ fn alone(system: &Path) -> Result<()> {
     let start = || {
         // Without rights of its own, a user has them in a namespace of its own.
         let mut command = Command::new("unshare");
-        command.args(["--user", "--map-root-user", "chroot"]).arg(system).arg(format!("/usr/local/bin/{NAME}"));
+        command
+            .args(["--user", "--map-root-user", "chroot"])
+            .arg(system)
+            .arg(format!("/usr/local/bin/{NAME}"));
         Ok(command)
     };
     let study = format!("/usr/share/mimique/{DEMO}");
@@ -157,9 +174,14 @@ fn alone(system: &Path) -> Result<()> {
 }
 
 fn by_engine(image: &Path) -> Result<Tried> {
-    let engine = ["podman", "docker"].into_iter().find(|engine| output(Command::new(engine).arg("info")).is_some());
+    let engine = ["podman", "docker"]
+        .into_iter()
+        .find(|engine| output(Command::new(engine).arg("info")).is_some());
     let Some(engine) = engine else {
-        return Ok(Tried::InPart("run with its layer as the root of all files; neither podman nor docker answers here".into()));
+        return Ok(Tried::InPart(
+            "run with its layer as the root of all files; neither podman nor docker answers here"
+                .into(),
+        ));
     };
     let said = answer(Command::new(engine).args(["load", "--input"]).arg(image))?;
     let name = said.trim().rsplit(": ").next().unwrap_or_default().to_owned();
@@ -181,7 +203,8 @@ mod tests {
         let layer = files::tar(&folders(), &[File::text("etc/passwd", "root")]).unwrap();
         let whole = layout("arm64", &layer).unwrap();
         let blob = |descriptor: &Value| {
-            let name = format!("blobs/{}", descriptor["digest"].as_str().unwrap().replace(':', "/"));
+            let name =
+                format!("blobs/{}", descriptor["digest"].as_str().unwrap().replace(':', "/"));
             let file = whole.iter().find(|file| file.name == name).unwrap();
             assert_eq!(descriptor["size"], file.bytes.len());
             file.bytes.clone()

@@ -16,7 +16,8 @@ const FILES: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE"
 
 /// An expression as SPDX writes it: older crates write `MIT/Apache-2.0`.
 pub fn canonical(expression: &str) -> Result<String> {
-    let words = Expression::canonicalize(expression).map_err(|error| anyhow!("licence {expression:?}: {error}"))?;
+    let words = Expression::canonicalize(expression)
+        .map_err(|error| anyhow!("licence {expression:?}: {error}"))?;
     let text = words.unwrap_or_else(|| expression.to_owned());
     parsed(&text)?;
     Ok(text)
@@ -30,7 +31,9 @@ pub fn allowed() -> Result<Vec<Licensee>> {
     list.split('"')
         .skip(1)
         .step_by(2)
-        .map(|name| Licensee::parse(name).map_err(|error| anyhow!("deny.toml: allow: {name:?}: {error}")))
+        .map(|name| {
+            Licensee::parse(name).map_err(|error| anyhow!("deny.toml: allow: {name:?}: {error}"))
+        })
         .collect()
 }
 
@@ -57,7 +60,8 @@ pub fn texts(components: &Components) -> Result<String> {
             refused.join("; ")
         );
     }
-    let mut whole = format!("This package is made of the following, beside its own code.\n\n{table}");
+    let mut whole =
+        format!("This package is made of the following, beside its own code.\n\n{table}");
     for (text, names) in &texts {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         write!(whole, "\n{}\n{}:\n\n{}\n", "-".repeat(80), names.join(", "), text)?;
@@ -66,7 +70,11 @@ pub fn texts(components: &Components) -> Result<String> {
 }
 
 /// The texts of one component; none where its licence is not allowed.
-fn of(component: &Component, expression: &Expression, allowed: &[Licensee]) -> Result<Option<Vec<String>>> {
+fn of(
+    component: &Component,
+    expression: &Expression,
+    allowed: &[Licensee],
+) -> Result<Option<Vec<String>>> {
     let Ok(needed) = expression.minimized_requirements(allowed) else { return Ok(None) };
     let own = component.folder.as_deref().map(brought_along).transpose()?.unwrap_or_default();
     if !own.is_empty() {
@@ -88,7 +96,8 @@ fn brought_along(folder: &Path) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let path = entry?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy().to_uppercase()).unwrap_or_default();
+        let name =
+            path.file_name().map(|name| name.to_string_lossy().to_uppercase()).unwrap_or_default();
         if path.is_file() && FILES.iter().any(|file| name.starts_with(file)) {
             found.push(tidy(&String::from_utf8_lossy(&std::fs::read(&path)?)));
         }
@@ -104,7 +113,8 @@ fn tidy(text: &str) -> String {
 }
 
 fn parsed(expression: &str) -> Result<Expression> {
-    Expression::parse_mode(expression, ParseMode::LAX).map_err(|error| anyhow!("licence {expression:?}: {error}"))
+    Expression::parse_mode(expression, ParseMode::LAX)
+        .map_err(|error| anyhow!("licence {expression:?}: {error}"))
 }
 
 #[cfg(test)]
@@ -114,7 +124,15 @@ mod tests {
 
     fn component(name: &str, licence: &str) -> (String, Component) {
         let version = "1.0.0".to_owned();
-        (key(name, "1.0.0"), Component { name: name.into(), version, licence: licence.into(), ..Component::default() })
+        (
+            key(name, "1.0.0"),
+            Component {
+                name: name.into(),
+                version,
+                licence: licence.into(),
+                ..Component::default()
+            },
+        )
     }
 
     #[test]
@@ -133,13 +151,20 @@ mod tests {
     fn a_crate_without_a_file_gets_the_text_of_spdx() {
         let text = texts(&Components::from([component("a", "MIT/Apache-2.0")])).unwrap();
         assert!(text.contains("a 1.0.0: MIT OR Apache-2.0"), "{text}");
-        assert!(text.contains("Copyright (c) The authors of a") && text.contains("Permission is hereby granted"));
+        assert!(
+            text.contains("Copyright (c) The authors of a")
+                && text.contains("Permission is hereby granted")
+        );
         assert!(!text.contains("Apache License"), "one of two is enough: {text}");
     }
 
     #[test]
     fn everything_in_the_program_may_be_passed_on() {
-        let roots: Vec<_> = PAGES.iter().map(|name| (*name, WASM)).chain([("mimique", "x86_64-pc-windows-msvc")]).collect();
+        let roots: Vec<_> = PAGES
+            .iter()
+            .map(|name| (*name, WASM))
+            .chain([("mimique", "x86_64-pc-windows-msvc")])
+            .collect();
         let text = texts(&dependencies::of(&roots).unwrap()).unwrap();
         assert!(text.contains("serde 1.") && text.contains("ring 0."));
     }

@@ -131,7 +131,8 @@ pub fn run(args: &Args) -> Result<()> {
     std::fs::create_dir_all(&out).with_context(|| out.display().to_string())?;
     let mut packaging = Packaging { args, out, tally: Tally::default(), programs: Vec::new() };
     packaging.all(&targets)?;
-    if !packaging.tally.close(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|value| value != "1")) {
+    if !packaging.tally.close(std::env::var_os("MIMIQUE_NO_SKIP").is_none_or(|value| value != "1"))
+    {
         bail!("not every package is there and runs");
     }
     Ok(())
@@ -202,7 +203,8 @@ impl Packaging<'_> {
         let Some((program, bill)) = built else { return };
         self.programs.push(program);
         if check {
-            self.tally.tried(&checked(&format!("bill of materials, {}", target.triple)), || valid(&bill));
+            self.tally
+                .tried(&checked(&format!("bill of materials, {}", target.triple)), || valid(&bill));
         }
     }
 
@@ -224,7 +226,9 @@ impl Packaging<'_> {
                 Ok(Tried::Done)
             });
             if let (Some(package), true) = (package, self.args.check) {
-                self.tally.tried(&checked(&name), || kind.check(program, &package, &work.path().join("check")));
+                self.tally.tried(&checked(&name), || {
+                    kind.check(program, &package, &work.path().join("check"))
+                });
             }
         }
         Ok(())
@@ -232,7 +236,10 @@ impl Packaging<'_> {
 
     /// The program that this machine runs as it is.
     fn own_program(&self) -> Option<&Path> {
-        let own = self.programs.iter().find(|program| matches!(program.target.runner(), Runner::Directly));
+        let own = self
+            .programs
+            .iter()
+            .find(|program| matches!(program.target.runner(), Runner::Directly));
         own.map(|program| program.path.as_path())
     }
 

@@ -13,8 +13,8 @@ use super::facts::{LICENCE, PUBLISHER, REPOSITORY, STAGE, VERSION};
 use super::files::{self, File};
 use crate::install::{self, Found};
 use crate::process::root;
-use crate::web;
 use crate::tally::Tried;
+use crate::web;
 
 /// Which of the pages' files belong to it: these, and what lies in these folders.
 const MODULES: [&str; 11] = [
@@ -47,7 +47,9 @@ pub fn make(out: &Path, work: &Path) -> Result<PathBuf> {
     let folder = work.join("npm");
     files::write_below(&folder, &whole)?;
     let mut pack = Command::new(install::NPM);
-    pack.args(["pack", "--silent", "--ignore-scripts", "--pack-destination"]).arg(out).current_dir(&folder);
+    pack.args(["pack", "--silent", "--ignore-scripts", "--pack-destination"])
+        .arg(out)
+        .current_dir(&folder);
     let name = answer(&mut pack)?;
     Ok(out.join(name.trim()))
 }
@@ -56,7 +58,8 @@ pub fn make(out: &Path, work: &Path) -> Result<PathBuf> {
 fn templates() -> Result<Vec<File>> {
     let mut found = files::below(&root().join("xtask/package/npm"))?;
     for page in found.iter_mut().filter(|file| file.name == "README.md") {
-        page.bytes = String::from_utf8_lossy(&page.bytes).replace("{repository}", REPOSITORY).into_bytes();
+        page.bytes =
+            String::from_utf8_lossy(&page.bytes).replace("{repository}", REPOSITORY).into_bytes();
     }
     Ok(found)
 }
@@ -97,13 +100,17 @@ fn imports_lead_somewhere(whole: &[File]) -> Result<()> {
         }
     }
     if !lost.is_empty() {
-        bail!("{STAGE}: these files are not in the package: {}; add them to MODULES", lost.join("; "));
+        bail!(
+            "{STAGE}: these files are not in the package: {}; add them to MODULES",
+            lost.join("; ")
+        );
     }
     Ok(())
 }
 
 fn is_neighbour(text: &str) -> bool {
-    (text.starts_with("./") || text.starts_with("../")) && (text.ends_with(".js") || text.ends_with(".wasm"))
+    (text.starts_with("./") || text.starts_with("../"))
+        && (text.ends_with(".js") || text.ends_with(".wasm"))
 }
 
 fn resolved(folder: &Path, named: &str) -> String {
@@ -135,19 +142,35 @@ pub fn check(package: &Path, program: Option<&Path>, work: &Path) -> Result<Trie
             .arg("console.log(Object.keys(await import('@mimique/stage')).sort().join(' '))")
             .current_dir(&folder),
     )?;
-    let expected = exported(&String::from_utf8_lossy(&files::read(&root().join("static/stage/host.js"))?));
+    let expected =
+        exported(&String::from_utf8_lossy(&files::read(&root().join("static/stage/host.js"))?));
     ensure!(said.trim() == expected.join(" "), "it exports {said:?} instead of {expected:?}");
     std::fs::write(folder.join("embedding.ts"), EMBEDDING)?;
     let mut compile = Command::new("node");
-    compile.args(["node_modules/typescript/bin/tsc", "--noEmit", "--strict", "--module", "nodenext"]);
-    answer(compile.args(["--target", "es2022", "--lib", "es2022,dom", "embedding.ts"]).current_dir(&folder))?;
+    compile.args([
+        "node_modules/typescript/bin/tsc",
+        "--noEmit",
+        "--strict",
+        "--module",
+        "nodenext",
+    ]);
+    answer(
+        compile
+            .args(["--target", "es2022", "--lib", "es2022,dom", "embedding.ts"])
+            .current_dir(&folder),
+    )?;
     let Some(program) = program else {
-        return Ok(Tried::InPart("imported and compiled against, not drawn with: no program of this machine was built".into()));
+        return Ok(Tried::InPart(
+            "imported and compiled against, not drawn with: no program of this machine was built"
+                .into(),
+        ));
     };
     let tests = root().join("tests/browser");
     for found in [install::CHROMIUM.ensure(), install::npm(&tests)?] {
         if let Found::No(remedy) = found {
-            return Ok(Tried::InPart(format!("imported and compiled against, not drawn with: {remedy}")));
+            return Ok(Tried::InPart(format!(
+                "imported and compiled against, not drawn with: {remedy}"
+            )));
         }
     }
     let mut draw = Command::new("node");
@@ -174,7 +197,10 @@ fn exported(script: &str) -> Vec<String> {
         if let Some(list) = line.strip_prefix("export {").and_then(|rest| rest.split('}').next()) {
             names.extend(list.split(',').map(|name| name.trim().to_owned()));
         }
-        let function = line.trim_start_matches("export ").trim_start_matches("async ").strip_prefix("function ");
+        let function = line
+            .trim_start_matches("export ")
+            .trim_start_matches("async ")
+            .strip_prefix("function ");
         if let (true, Some(function)) = (line.starts_with("export "), function) {
             names.extend(function.split('(').next().map(str::to_owned));
         }
@@ -190,19 +216,29 @@ mod tests {
     /// The index passes on what the host script exports; its types name the same.
     #[test]
     fn types_name_what_the_host_script_exports() {
-        let text = |path: &str| String::from_utf8(files::read(&root().join(path)).unwrap()).unwrap();
+        let text =
+            |path: &str| String::from_utf8(files::read(&root().join(path)).unwrap()).unwrap();
         let host = exported(&text("static/stage/host.js"));
         assert!(host.len() >= 8 && host.contains(&"openStage".to_owned()), "{host:?}");
         assert_eq!(host, exported(&text("xtask/package/npm/index.d.ts")));
         let page = templates().unwrap().into_iter().find(|file| file.name == "README.md").unwrap();
-        assert!(String::from_utf8(page.bytes).unwrap().contains(REPOSITORY), "the package's page names no place");
+        assert!(
+            String::from_utf8(page.bytes).unwrap().contains(REPOSITORY),
+            "the package's page names no place"
+        );
     }
 
     #[test]
     fn a_file_that_is_not_there_is_named() {
-        let there = [File::text("modules/a/b.js", "import '../c.js'; import(\"./d.js\")"), File::text("modules/c.js", "")];
+        let there = [
+            File::text("modules/a/b.js", "import '../c.js'; import(\"./d.js\")"),
+            File::text("modules/c.js", ""),
+        ];
         let refused = imports_lead_somewhere(&there).unwrap_err().to_string();
-        assert!(refused.contains("modules/a/b.js: ./d.js") && !refused.contains("c.js;"), "{refused}");
+        assert!(
+            refused.contains("modules/a/b.js: ./d.js") && !refused.contains("c.js;"),
+            "{refused}"
+        );
     }
 
     #[test]

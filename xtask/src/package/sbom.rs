@@ -66,7 +66,14 @@ fn serial_number(bill: &Value) -> String {
     bytes[6] = bytes[6] & 0x0f | 0x80;
     bytes[8] = bytes[8] & 0x3f | 0x80;
     let text = hex::encode(bytes);
-    format!("urn:uuid:{}-{}-{}-{}-{}", &text[..8], &text[8..12], &text[12..16], &text[16..20], &text[20..])
+    format!(
+        "urn:uuid:{}-{}-{}-{}-{}",
+        &text[..8],
+        &text[8..12],
+        &text[12..16],
+        &text[16..20],
+        &text[20..]
+    )
 }
 
 #[cfg(test)]
@@ -79,9 +86,21 @@ mod tests {
         let component = |name: &str, licence: &str, depends: &[&str]| {
             let depends = depends.iter().map(|name| key(name, "1.0.0")).collect();
             let version = "1.0.0".to_owned();
-            (key(name, "1.0.0"), Component { name: name.into(), version, licence: licence.into(), depends, ..Component::default() })
+            (
+                key(name, "1.0.0"),
+                Component {
+                    name: name.into(),
+                    version,
+                    licence: licence.into(),
+                    depends,
+                    ..Component::default()
+                },
+            )
         };
-        let components = Components::from([component("a", "MIT/Apache-2.0", &["b"]), component("b", "Zlib", &[])]);
+        let components = Components::from([
+            component("a", "MIT/Apache-2.0", &["b"]),
+            component("b", "Zlib", &[]),
+        ]);
         let text = cyclonedx("mimique", "somewhere", &components).unwrap();
         assert_eq!(text, cyclonedx("mimique", "somewhere", &components).unwrap());
         let bill: Value = serde_json::from_str(&text).unwrap();
@@ -91,7 +110,9 @@ mod tests {
         assert_eq!(bill["dependencies"][1]["dependsOn"][0], "pkg:cargo/b@1.0.0");
         let serial = bill["serialNumber"].as_str().unwrap();
         assert!(serial.starts_with("urn:uuid:") && serial.len() == 45, "{serial}");
-        let refused = cyclonedx("mimique", "somewhere", &Components::from([component("c", "mine", &[])])).unwrap_err();
+        let refused =
+            cyclonedx("mimique", "somewhere", &Components::from([component("c", "mine", &[])]))
+                .unwrap_err();
         assert!(format!("{refused:#}").contains("pkg:cargo/c@1.0.0"), "{refused:#}");
     }
 }

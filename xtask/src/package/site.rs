@@ -30,19 +30,29 @@ pub fn make(program: &Path, out: &Path, work: &Path) -> Result<PathBuf> {
         command
     };
     let mut export = mimique();
-    export.args(["export-site", DEMO, "--out"]).arg(folder.join("study")).arg("--packs").arg(work.join("packs"));
+    export
+        .args(["export-site", DEMO, "--out"])
+        .arg(folder.join("study"))
+        .arg("--packs")
+        .arg(work.join("packs"));
     answer(&mut export)?;
     let answers = work.join("answers");
     answer(mimique().args(["simulate", DEMO, "--participants", PEOPLE, "--out"]).arg(&answers))?;
     let mut analyze = mimique();
-    analyze.arg("analyze").arg(export_of(&answers)?).args(["--study", DEMO, "--out"]).arg(folder.join("report"));
+    analyze
+        .arg("analyze")
+        .arg(export_of(&answers)?)
+        .args(["--study", DEMO, "--out"])
+        .arg(folder.join("report"));
     answer(&mut analyze)?;
     let report = folder.join("report/report.html");
     ensure!(report.exists(), "{}: was not written", report.display());
     std::fs::write(folder.join("index.html"), first_page())?;
-    let whole: Vec<_> = files::below(&folder)?.into_iter().map(|file| file.within("demonstration")).collect();
+    let whole: Vec<_> =
+        files::below(&folder)?.into_iter().map(|file| file.within("demonstration")).collect();
     let archive = out.join(format!("{NAME}-{VERSION}-demonstration.tar.gz"));
-    std::fs::write(&archive, files::gzip(&files::tar(&[], &whole)?)?).with_context(|| archive.display().to_string())?;
+    std::fs::write(&archive, files::gzip(&files::tar(&[], &whole)?)?)
+        .with_context(|| archive.display().to_string())?;
     Ok(archive)
 }
 

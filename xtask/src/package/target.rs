@@ -80,7 +80,10 @@ impl Target {
         let found = TARGETS.iter().find(|target| target.triple == triple);
         let Some(found) = found else {
             let names: Vec<&str> = TARGETS.iter().map(|target| target.triple).collect();
-            bail!("--target: no packages are made for {triple}; choose one of: {}", names.join(", "));
+            bail!(
+                "--target: no packages are made for {triple}; choose one of: {}",
+                names.join(", ")
+            );
         };
         Ok(found)
     }
@@ -90,7 +93,10 @@ impl Target {
         let own: Vec<&Self> = if cfg!(target_os = "linux") {
             TARGETS.iter().filter(|target| target.is_linux()).collect()
         } else {
-            TARGETS.iter().filter(|target| target.is_of_this_system() && target.is_of_this_processor()).collect()
+            TARGETS
+                .iter()
+                .filter(|target| target.is_of_this_system() && target.is_of_this_processor())
+                .collect()
         };
         if own.is_empty() {
             bail!(
@@ -150,7 +156,11 @@ impl Target {
     /// How its program is run here; asks for an emulator where one is needed.
     pub fn runner(&self) -> Runner {
         if !self.is_of_this_system() {
-            return Runner::No(format!("a program of {} does not run on {}", self.triple, std::env::consts::OS));
+            return Runner::No(format!(
+                "a program of {} does not run on {}",
+                self.triple,
+                std::env::consts::OS
+            ));
         }
         if self.is_of_this_processor() {
             return Runner::Directly;
@@ -194,7 +204,10 @@ mod tests {
             assert!(target.triple.starts_with(target.processor));
         }
         let refused = Target::named("sparc-sun-solaris").unwrap_err().to_string();
-        assert!(refused.contains("sparc-sun-solaris") && refused.contains("aarch64-apple-darwin"), "{refused}");
+        assert!(
+            refused.contains("sparc-sun-solaris") && refused.contains("aarch64-apple-darwin"),
+            "{refused}"
+        );
     }
 
     /// What `cargo binstall` makes of its templates is the name of an archive.
@@ -203,11 +216,13 @@ mod tests {
         let manifest = crate::process::root().join("crates/cli/Cargo.toml");
         let text = std::fs::read_to_string(manifest).unwrap();
         let value = |key: &str| {
-            let line = text.lines().find(|line| line.starts_with(&format!("{key} = "))).expect("the key");
+            let line =
+                text.lines().find(|line| line.starts_with(&format!("{key} = "))).expect("the key");
             line.split('"').nth(1).expect("a text").to_owned()
         };
         for target in &TARGETS {
-            let (suffix, ending) = if target.is_windows() { (".zip", ".exe") } else { (".tar.gz", "") };
+            let (suffix, ending) =
+                if target.is_windows() { (".zip", ".exe") } else { (".tar.gz", "") };
             let filled = |template: String| {
                 let values = [
                     ("{ repo }", super::super::facts::REPOSITORY),
@@ -223,7 +238,10 @@ mod tests {
             };
             let address = super::super::facts::release_address(&target.archive());
             assert_eq!(filled(value("pkg-url")), address);
-            assert_eq!(filled(value("bin-dir")), format!("{}/{}", target.archive_stem(), target.program()));
+            assert_eq!(
+                filled(value("bin-dir")),
+                format!("{}/{}", target.archive_stem(), target.program())
+            );
         }
     }
 }

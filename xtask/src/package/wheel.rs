@@ -39,11 +39,16 @@ fn name(target: &Target) -> String {
 fn whole(program: &Program) -> Result<Vec<File>> {
     let target = program.target;
     let information = format!("{NAME}-{VERSION}.dist-info");
-    let [readme, demo] = <[File; 2]>::try_from(readme_and_demo()?).map_err(|_| anyhow!("a page and a study"))?;
-    let licences: Vec<&str> = program.terms.licences.iter().map(|file| file.name.as_str()).collect();
+    let [readme, demo] =
+        <[File; 2]>::try_from(readme_and_demo()?).map_err(|_| anyhow!("a page and a study"))?;
+    let licences: Vec<&str> =
+        program.terms.licences.iter().map(|file| file.name.as_str()).collect();
     let metadata = metadata(&licences, &String::from_utf8_lossy(&readme.bytes));
     let mut whole = vec![
-        File::program(format!("{NAME}-{VERSION}.data/scripts/{}", target.program()), program.bytes.clone()),
+        File::program(
+            format!("{NAME}-{VERSION}.data/scripts/{}", target.program()),
+            program.bytes.clone(),
+        ),
         demo.within(&format!("{NAME}-{VERSION}.data/data/share/{NAME}")),
         File::text(format!("{information}/METADATA"), metadata),
         File::text(format!("{information}/WHEEL"), tags(target)),
@@ -67,7 +72,9 @@ fn metadata(licences: &[&str], description: &str) -> String {
 
 fn tags(target: &Target) -> String {
     let tags: String = target.wheel_tags.iter().map(|tag| format!("Tag: {tag}\n")).collect();
-    format!("Wheel-Version: 1.0\nGenerator: cargo-xtask-package {VERSION}\nRoot-Is-Purelib: false\n{tags}")
+    format!(
+        "Wheel-Version: 1.0\nGenerator: cargo-xtask-package {VERSION}\nRoot-Is-Purelib: false\n{tags}"
+    )
 }
 
 /// Installs it by pip into a fresh environment and by uv, and runs it; a wheel of another processor is unpacked.
@@ -76,12 +83,23 @@ pub fn check(program: &Program, wheel: &Path, work: &Path) -> Result<Tried> {
     let target = program.target;
     std::fs::create_dir_all(work)?;
     if !matches!(target.runner(), Runner::Directly) {
-        answer(Command::new(&python).args(["-m", "wheel", "unpack"]).arg(wheel).arg("--dest").arg(work))?;
+        answer(
+            Command::new(&python)
+                .args(["-m", "wheel", "unpack"])
+                .arg(wheel)
+                .arg("--dest")
+                .arg(work),
+        )?;
         let data = work.join(format!("{NAME}-{VERSION}/{NAME}-{VERSION}.data"));
-        let (path, study) = (data.join("scripts").join(target.program()), data.join("data/share").join(NAME).join(DEMO));
+        let (path, study) = (
+            data.join("scripts").join(target.program()),
+            data.join("data/share").join(NAME).join(DEMO),
+        );
         let ran = check::placed(&Placed { program, path: &path, study: &study })?;
         let Tried::InPart(why) = ran else { return Ok(ran) };
-        return Ok(Tried::InPart(format!("unpacked, since pip takes wheels of its own processor alone; {why}")));
+        return Ok(Tried::InPart(format!(
+            "unpacked, since pip takes wheels of its own processor alone; {why}"
+        )));
     }
     let environment = work.join("environment");
     answer(Command::new(&python).args(["-m", "venv"]).arg(&environment))?;
@@ -92,8 +110,11 @@ pub fn check(program: &Program, wheel: &Path, work: &Path) -> Result<Tried> {
     let study = environment.join("share").join(NAME).join(DEMO);
     check::placed(&Placed { program, path: &programs.join(target.program()), study: &study })?;
 
-    let mut uv = Command::new(python.parent().context("an interpreter lies in a folder")?.join("uv"));
-    uv.args(["tool", "run", "--offline", "--no-config", "--from"]).arg(wheel).args([NAME, "--version"]);
+    let mut uv =
+        Command::new(python.parent().context("an interpreter lies in a folder")?.join("uv"));
+    uv.args(["tool", "run", "--offline", "--no-config", "--from"])
+        .arg(wheel)
+        .args([NAME, "--version"]);
     uv.env("UV_CACHE_DIR", work.join("uv-cache")).env("UV_TOOL_DIR", work.join("uv-tools"));
     let said = answer(&mut uv)?;
     anyhow::ensure!(said.trim() == format!("{NAME} {VERSION}"), "uv tool run: {said:?}");
@@ -110,14 +131,22 @@ mod tests {
         let linux = &TARGETS[0];
         assert_eq!(
             name(linux),
-            format!("mimique-{VERSION}-py3-none-manylinux2014_x86_64.manylinux_2_17_x86_64.musllinux_1_1_x86_64.whl")
+            format!(
+                "mimique-{VERSION}-py3-none-manylinux2014_x86_64.manylinux_2_17_x86_64.musllinux_1_1_x86_64.whl"
+            )
         );
         let tags = tags(linux);
-        assert!(tags.contains("\nTag: py3-none-musllinux_1_1_x86_64\n") && tags.starts_with("Wheel-Version: 1.0\n"));
+        assert!(
+            tags.contains("\nTag: py3-none-musllinux_1_1_x86_64\n")
+                && tags.starts_with("Wheel-Version: 1.0\n")
+        );
         let metadata = metadata(&["LICENSE-MIT"], "# Words");
         let (head, body) = metadata.split_once("\n\n").unwrap();
         assert!(head.lines().all(|line| line.contains(": ")), "{head}");
-        assert!(head.contains(&format!("\nVersion: {VERSION}\n")) && head.contains("\nLicense-File: LICENSE-MIT\n"));
+        assert!(
+            head.contains(&format!("\nVersion: {VERSION}\n"))
+                && head.contains("\nLicense-File: LICENSE-MIT\n")
+        );
         assert_eq!(body, "# Words");
     }
 }

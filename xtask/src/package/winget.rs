@@ -70,16 +70,25 @@ mod tests {
     #[test]
     fn manifests_are_yaml_with_version_address_and_hash() {
         let target = windows().unwrap();
-        let [version, installer, texts] = manifests(target, &"ab".repeat(32)).map(|(_, text)| yaml::read(&text));
-        for (manifest, kind) in [(&version, "version"), (&installer, "installer"), (&texts, "defaultLocale")] {
+        let [version, installer, texts] =
+            manifests(target, &"ab".repeat(32)).map(|(_, text)| yaml::read(&text));
+        for (manifest, kind) in
+            [(&version, "version"), (&installer, "installer"), (&texts, "defaultLocale")]
+        {
             assert_eq!(manifest["PackageVersion"].as_str(), Some(VERSION));
             assert_eq!(manifest["ManifestType"].as_str(), Some(kind));
         }
         let download = &installer["Installers"][0];
-        assert_eq!(download["InstallerUrl"].as_str(), Some(release_address(&target.archive()).as_str()));
+        assert_eq!(
+            download["InstallerUrl"].as_str(),
+            Some(release_address(&target.archive()).as_str())
+        );
         assert_eq!(download["InstallerSha256"].as_str(), Some("AB".repeat(32).as_str()));
         let file = format!("{}\\mimique.exe", target.archive_stem());
-        assert_eq!(installer["NestedInstallerFiles"][0]["RelativeFilePath"].as_str(), Some(file.as_str()));
+        assert_eq!(
+            installer["NestedInstallerFiles"][0]["RelativeFilePath"].as_str(),
+            Some(file.as_str())
+        );
         assert_eq!(texts["ShortDescription"].as_str(), Some(SUMMARY));
     }
 }

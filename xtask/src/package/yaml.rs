@@ -4,7 +4,8 @@ use saphyr::{LoadableYamlNode as _, YamlOwned};
 
 /// The only document of a text.
 pub fn read(text: &str) -> YamlOwned {
-    let documents = YamlOwned::load_from_str(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let documents =
+        YamlOwned::load_from_str(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!(documents.len(), 1, "{text}");
     documents.into_iter().next().expect("one document")
 }
