@@ -163,7 +163,7 @@ mod tests {
         let roots: Vec<_> = PAGES
             .iter()
             .map(|name| (*name, WASM))
-            .chain([("mimique", "x86_64-pc-windows-msvc")])
+            .chain([("mimique", "x86_64-unknown-linux-musl")])
             .collect();
         let text = texts(&dependencies::of(&roots).unwrap()).unwrap();
         assert!(text.contains("serde 1.") && text.contains("ring 0."));
