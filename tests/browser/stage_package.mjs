@@ -25,7 +25,8 @@ function host(packs) {
         return answer.writeHead(pack.status).end(Buffer.from(await pack.arrayBuffer()));
       }
       const type = types[extname(path)] ?? "application/octet-stream";
-      answer.writeHead(200, { "content-type": type }).end(readFileSync(join(folder, path.replace(/^\/stage\//, ""))));
+      const file = readFileSync(join(folder, path.replace(/^\/stage\//, "")));
+      answer.writeHead(200, { "content-type": type }).end(file);
     } catch {
       answer.writeHead(404).end();
     }

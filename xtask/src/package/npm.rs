@@ -108,9 +108,11 @@ fn imports_lead_somewhere(whole: &[File]) -> Result<()> {
     Ok(())
 }
 
+/// Whether a quoted text is the address of a neighbour; wasm-bindgen's modules call their own scripts `NAME_bg.js`.
 fn is_neighbour(text: &str) -> bool {
-    (text.starts_with("./") || text.starts_with("../"))
-        && (text.ends_with(".js") || text.ends_with(".wasm"))
+    let is_below = text.starts_with("./") || text.starts_with("../");
+    let is_module = text.ends_with(".js") && !text.ends_with("_bg.js");
+    is_below && (is_module || text.ends_with(".wasm"))
 }
 
 fn resolved(folder: &Path, named: &str) -> String {
