@@ -35,6 +35,11 @@ pub fn make(program: &Program, out: &Path) -> Result<PathBuf> {
     Ok(path)
 }
 
+/// What an engine calls the image.
+fn tag() -> String {
+    format!("{NAME}:{VERSION}")
+}
+
 /// Folders that the program writes into.
 fn folders() -> [Folder; 2] {
     [
@@ -80,7 +85,7 @@ fn layout(architecture: &str, layer: &[u8]) -> Result<Vec<File>> {
     });
     let mut listed = blob(MANIFEST, serde_json::to_vec(&manifest)?);
     listed["platform"] = json!({ "os": "linux", "architecture": architecture });
-    listed["annotations"] = json!({ "org.opencontainers.image.ref.name": VERSION });
+    listed["annotations"] = json!({ "org.opencontainers.image.ref.name": tag() });
     let index = json!({
         "schemaVersion": 2,
         "mediaType": "application/vnd.oci.image.index.v1+json",
@@ -90,7 +95,7 @@ fn layout(architecture: &str, layer: &[u8]) -> Result<Vec<File>> {
         |descriptor: &Value| descriptor["digest"].as_str().unwrap_or_default().replace(':', "/");
     let for_docker = json!([{
         "Config": format!("blobs/{}", place(&configuration)),
-        "RepoTags": [format!("{NAME}:{VERSION}")],
+        "RepoTags": [tag()],
         "Layers": [format!("blobs/{}", place(&packed))],
     }]);
     let mut whole = vec![
@@ -143,7 +148,10 @@ pub fn check(program: &Program, image: &Path, work: &Path) -> Result<Tried> {
     let layer = list[0]["Layers"][0].as_str().context("manifest.json: no layer")?;
     let system = work.join("system");
     std::fs::create_dir_all(&system)?;
-    answer(Command::new("tar").arg("-xzf").arg(unpacked.join(layer)).current_dir(&system))?;
+    let mut unpack = Command::new("tar");
+    // The owners of the layer are nobody here.
+    unpack.args(["--no-same-owner", "-xzf"]).arg(unpacked.join(layer));
+    answer(unpack.current_dir(&system))?;
     let path = system.join("usr/local/bin").join(NAME);
     let ran = check::placed(&Placed {
         program,
@@ -190,7 +198,10 @@ fn by_engine(image: &Path) -> Result<Tried> {
         command.args(["run", "--rm", "--network", "none", &name]);
         Ok(command)
     };
-    check::says_version_and_checks(&start, &format!("/usr/share/mimique/{DEMO}"))?;
+    let ran = check::says_version_and_checks(&start, &format!("/usr/share/mimique/{DEMO}"));
+    answer(Command::new(engine).args(["rmi", "--force", &name]))?;
+    ran?;
+    ensure!(name.ends_with(&tag()), "{engine} has loaded {name} instead of {}", tag());
     Ok(Tried::Done)
 }
 
