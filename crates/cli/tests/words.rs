@@ -10,7 +10,7 @@ use common::ok;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Options that are not ours, by who has them.
-const OF_OTHERS: [&str; 21] = [
+const OF_OTHERS: [&str; 22] = [
     // cargo and its tests
     "--release",
     "--test",
@@ -32,6 +32,7 @@ const OF_OTHERS: [&str; 21] = [
     "--study",
     "--runs",
     "--check",
+    "--built",
     // chmod's long name, in a recipe
     "--chmod",
     // sha256sum

@@ -19,8 +19,13 @@ pub fn python() -> Result<std::result::Result<PathBuf, String>> {
     install::python("package-tools", &root().join("xtask/package/requirements.txt"))
 }
 
-/// Builds the program of a target; where it lies, or why it cannot be built here.
-pub fn program(target: &Target) -> Result<std::result::Result<PathBuf, String>> {
+/// Builds the program of a target, or takes the one that is built; where it lies, or why it cannot be built here.
+pub fn program(target: &Target, is_built: bool) -> Result<std::result::Result<PathBuf, String>> {
+    let binary = target.binary();
+    if is_built {
+        let why = || format!("{} is not there; leave --built out", binary.display());
+        return Ok(binary.exists().then_some(binary.clone()).ok_or_else(why));
+    }
     install::rust_target(target.triple)?;
     say(&format!("building {NAME} for {}", target.triple));
     let mut command = cargo();
@@ -42,7 +47,6 @@ pub fn program(target: &Target) -> Result<std::result::Result<PathBuf, String>> 
     // Names of functions are a quarter of the file; panics have message and place without them.
     command.env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
     run(&mut command)?;
-    let binary = target.binary();
     if !binary.exists() {
         bail!("{}: was not built", binary.display());
     }

@@ -55,6 +55,9 @@ pub struct Args {
     /// Make packages of these targets; without it on Linux both static ones, elsewhere this machine's own
     #[arg(long, value_delimiter = ',')]
     target: Vec<String>,
+    /// Take pages and programs as they were built last
+    #[arg(long)]
+    built: bool,
     /// Install each package into a temporary place and run what it holds
     #[arg(long)]
     check: bool,
@@ -148,7 +151,8 @@ struct Packaging<'a> {
 impl Packaging<'_> {
     fn all(&mut self, targets: &[&'static Target]) -> Result<()> {
         let of_programs = Kind::OF_PROGRAMS.iter().any(|kind| self.wants(*kind));
-        if of_programs || self.wants(Kind::Npm) || self.wants(Kind::Site) {
+        let needs_pages = of_programs || self.wants(Kind::Npm) || self.wants(Kind::Site);
+        if needs_pages && !self.args.built {
             self.tally.done("pages", || web::all(false));
         }
         if of_programs || self.wants(Kind::Site) {
@@ -187,10 +191,10 @@ impl Packaging<'_> {
 
     /// Builds a target's program, and writes its bill of materials beside the packages, too.
     fn program(&mut self, target: &'static Target) {
-        let (out, check) = (&self.out, self.args.check);
+        let (out, check, is_built) = (&self.out, self.args.check, self.args.built);
         let mut built = None;
         self.tally.tried(&format!("program, {}", target.triple), || {
-            let path = match build::program(target)? {
+            let path = match build::program(target, is_built)? {
                 Ok(path) => path,
                 Err(why) => return Ok(Tried::Not(why)),
             };
