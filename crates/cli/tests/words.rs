@@ -10,7 +10,7 @@ use common::ok;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Options that are not ours, by who has them.
-const OF_OTHERS: [&str; 22] = [
+const OF_OTHERS: [&str; 23] = [
     // cargo and its tests
     "--release",
     "--test",
@@ -35,6 +35,8 @@ const OF_OTHERS: [&str; 22] = [
     "--built",
     // chmod's long name, in a recipe
     "--chmod",
+    // podman
+    "--ulimit",
     // sha256sum
     "--ignore-missing",
 ];
