@@ -9,7 +9,7 @@ const packs = new Map();
 
 // Another place that holds the packs by their hash, if this server names one. What comes from there
 // is checked like everything else; where it fails, the server itself is asked.
-const elsewhere = document.querySelector('meta[name="mimique-packs"]')?.content || "/packs";
+const elsewhere = globalThis.document?.querySelector('meta[name="mimique-packs"]')?.content || "/packs";
 
 /// The bytes of a pack. `onBytes(count)` is told of every piece that arrives; a try that fails
 /// takes its pieces back with a negative count.

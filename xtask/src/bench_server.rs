@@ -4,8 +4,7 @@
 //! `crates/server/examples/large_study.rs` fills the databases, PostgreSQL's in a cluster of its own, which lives
 //! as long as that process. Everything else is the released binary: `mimique export`, `mimique serve`.
 
-use std::io::{BufRead, BufReader, Read as _, Write as _};
-use std::net::TcpStream;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -16,6 +15,7 @@ use crate::bench_figures::{print, record};
 use crate::bench_stats::{best, peak};
 use crate::demo;
 use crate::process::{cargo, root, run, say, target};
+use crate::server::Server;
 
 const EVENTS: &str = "1000000";
 const TOKEN: &str = "mimique_bench";
@@ -131,7 +131,7 @@ fn measure(database: &str, study: &str, folder: &Path) -> Result<Column> {
         let memory = run.memory.map_or("-".to_owned(), |bytes| format!("{:.0}", bytes / 1e6));
         note(format!("{:.1}; {memory}", run.seconds));
     }
-    let (server, first) = Server::start(database, study, folder)?;
+    let (server, first) = serve(database, study, folder)?;
     note(format!("{first:.2}"));
     let page = format!("/researcher/studies/{study}");
     let (seconds, text) = server.read(&page)?;
@@ -142,7 +142,7 @@ fn measure(database: &str, study: &str, folder: &Path) -> Result<Column> {
     }
     note(format!("{:.0}", began.elapsed().as_secs_f64()));
     drop(server);
-    let (server, again) = Server::start(database, study, folder)?;
+    let (server, again) = serve(database, study, folder)?;
     note(format!("{again:.2}"));
     let (seconds, text) = server.read(&page)?;
     if text.contains(BEHIND) {
@@ -151,7 +151,7 @@ fn measure(database: &str, study: &str, folder: &Path) -> Result<Column> {
     note(format!("{seconds:.2}; {:.0}", text.len() as f64 / 1e3));
     note(format!("{:.2}", server.read(&page)?.0));
     drop(server);
-    let (server, _) = Server::start(database, study, folder)?;
+    let (server, _) = serve(database, study, folder)?;
     let began = Instant::now();
     std::thread::scope(|scope| -> Result<()> {
         let downloads = ["csv", "wide", "psych-ds"].map(|format| {
@@ -164,9 +164,9 @@ fn measure(database: &str, study: &str, folder: &Path) -> Result<Column> {
         }
         Ok(())
     })?;
-    note(format!("{:.1}; {:.0}", began.elapsed().as_secs_f64(), server.memory_mb()));
+    note(format!("{:.1}; {:.0}", began.elapsed().as_secs_f64(), memory_mb(&server)));
     drop(server);
-    let (server, _) = Server::start(database, study, folder)?;
+    let (server, _) = serve(database, study, folder)?;
     let began = Instant::now();
     // A large report may take longer than a request may: then it is ready for the next one.
     let mut report = server.count(&format!("{page}/report/en/report.html"));
@@ -174,90 +174,21 @@ fn measure(database: &str, study: &str, folder: &Path) -> Result<Column> {
         report = server.count(&format!("{page}/report/en/report.html"));
     }
     report?;
-    note(format!("{:.1}; {:.0}", began.elapsed().as_secs_f64(), server.memory_mb()));
+    note(format!("{:.1}; {:.0}", began.elapsed().as_secs_f64(), memory_mb(&server)));
     Ok(column)
 }
 
-/// `mimique serve`, ended when dropped.
-struct Server {
-    child: Child,
-    port: u16,
+/// `mimique serve` with this study; how long it took until it answered, seconds.
+fn serve(database: &str, study: &str, folder: &Path) -> Result<(Server, f64)> {
+    let mut serve = Command::new(demo::binary_path());
+    serve.args(["serve", &study_file(study), "--database", database, "--data-dir"]);
+    let (server, seconds) = Server::start(serve.arg(folder.join("data")).current_dir(root()))?;
+    Ok((server.with_token(TOKEN), seconds))
 }
 
-impl Server {
-    /// Starts it; how long it took until it answered, seconds.
-    fn start(database: &str, study: &str, folder: &Path) -> Result<(Self, f64)> {
-        let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
-        let began = Instant::now();
-        let child = Command::new(demo::binary_path())
-            .args(["serve", &study_file(study), "--database", database])
-            .args(["--listen", &format!("127.0.0.1:{port}"), "--data-dir"])
-            .arg(folder.join("data"))
-            .current_dir(root())
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .context("mimique serve")?;
-        let mut server = Self { child, port };
-        while server.read("/healthz").is_err() {
-            if let Some(end) = server.child.try_wait()? {
-                bail!("mimique serve ended: {end}");
-            }
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        Ok((server, began.elapsed().as_secs_f64()))
-    }
-
-    /// An answer as text, and how long it took, seconds.
-    fn read(&self, path: &str) -> Result<(f64, String)> {
-        let mut text = Vec::new();
-        let seconds = self.each(path, |bytes| text.extend_from_slice(bytes))?;
-        Ok((seconds, String::from_utf8_lossy(&text).into_owned()))
-    }
-
-    /// How large an answer is that is not kept.
-    fn count(&self, path: &str) -> Result<u64> {
-        let mut count = 0;
-        self.each(path, |bytes| count += bytes.len() as u64)?;
-        Ok(count)
-    }
-
-    /// Reads an answer with status 200 piece by piece.
-    fn each(&self, path: &str, mut take: impl FnMut(&[u8])) -> Result<f64> {
-        let began = Instant::now();
-        let mut stream = TcpStream::connect(("127.0.0.1", self.port))?;
-        let request = format!(
-            "GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\
-             Accept: text/html\r\nAuthorization: Bearer {TOKEN}\r\n\r\n"
-        );
-        stream.write_all(request.as_bytes())?;
-        let mut piece = vec![0; 256 * 1024];
-        let mut is_first = true;
-        loop {
-            let read = stream.read(&mut piece)?;
-            if is_first && !piece[..read].starts_with(b"HTTP/1.1 200") {
-                bail!("{path}: {}", String::from_utf8_lossy(&piece[..read.min(200)]));
-            }
-            is_first = false;
-            if read == 0 {
-                return Ok(began.elapsed().as_secs_f64());
-            }
-            take(&piece[..read]);
-        }
-    }
-
-    /// The largest resident size so far, MB.
-    fn memory_mb(&self) -> f64 {
-        peak(&format!("/proc/{}/status", self.child.id())).map_or(f64::NAN, |bytes| bytes / 1e6)
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
+/// The largest resident size of the server so far, MB.
+fn memory_mb(server: &Server) -> f64 {
+    peak(&format!("/proc/{}/status", server.id())).map_or(f64::NAN, |bytes| bytes / 1e6)
 }
 
 fn table(names: &[&str], columns: &[Column]) -> String {

@@ -21,20 +21,21 @@ pub enum Found {
 
 /// The compilation target of the web modules.
 pub fn wasm_target() -> Result<()> {
+    rust_target("wasm32-unknown-unknown")
+}
+
+/// A compilation target.
+pub fn rust_target(triple: &str) -> Result<()> {
     let installed =
         output(Command::new("rustup").args(["target", "list", "--installed"]).current_dir(root()));
     match installed {
-        Some(list) if list.lines().any(|l| l.trim() == "wasm32-unknown-unknown") => Ok(()),
+        Some(list) if list.lines().any(|l| l.trim() == triple) => Ok(()),
         Some(_) => {
-            say("adding the wasm32-unknown-unknown target");
-            run(Command::new("rustup")
-                .args(["target", "add", "wasm32-unknown-unknown"])
-                .current_dir(root()))
+            say(&format!("adding the {triple} target"));
+            run(Command::new("rustup").args(["target", "add", triple]).current_dir(root()))
         }
         None => {
-            say(
-                "rustup not found: if the wasm build fails, install the wasm32-unknown-unknown target",
-            );
+            say(&format!("rustup not found: if the build fails, install the {triple} target"));
             Ok(())
         }
     }
@@ -137,6 +138,25 @@ pub const PYTHON: Package = Package {
     ]),
     elsewhere: "Python 3.11 or newer with venv and pip",
 };
+/// What packs and unpacks Debian packages.
+pub const DPKG: Package = Package {
+    name: "dpkg",
+    sign: Sign::Program("dpkg-deb"),
+    elsewhere: "dpkg (macOS: brew install dpkg)",
+};
+/// What runs programs of another processor.
+pub const QEMU: Package = Package {
+    name: "qemu-user",
+    sign: Sign::Program("qemu-aarch64"),
+    elsewhere: "qemu-user (the programs qemu-aarch64 and qemu-x86_64)",
+};
+/// What reads the formula of Homebrew.
+pub const RUBY: Package =
+    Package { name: "ruby", sign: Sign::Program("ruby"), elsewhere: "Ruby, of any version" };
+
+/// npm's name as a program: on Windows it is a script, which a name without its ending does not find.
+pub const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
+
 impl Package {
     fn present(&self) -> bool {
         match self.sign {
@@ -199,7 +219,7 @@ pub fn nextest() -> Result<()> {
 
 /// The packages of `folder/package.json`, at the versions of its lock file.
 pub fn npm(folder: &Path) -> Result<Found> {
-    if !has("npm") {
+    if !has(NPM) {
         return Ok(Found::No("install Node.js 20 or newer with npm".into()));
     }
     let lock = folder.join("package-lock.json");
@@ -212,7 +232,7 @@ pub fn npm(folder: &Path) -> Result<Found> {
         "installing the npm packages of {}",
         folder.strip_prefix(root()).unwrap_or(folder).display()
     ));
-    run(Command::new("npm")
+    run(Command::new(NPM)
         .args(["ci", "--no-audit", "--no-fund", "--ignore-scripts", "--loglevel=error"])
         .current_dir(folder))?;
     std::fs::write(&stamp, wanted)?;
@@ -224,17 +244,19 @@ pub fn npm(folder: &Path) -> Result<Found> {
 pub fn python(name: &str, requirements: &Path) -> Result<std::result::Result<PathBuf, String>> {
     let wanted = std::fs::read(requirements).with_context(|| requirements.display().to_string())?;
     let environment = target().join(name);
-    let interpreter = environment.join("bin/python");
+    let interpreter =
+        environment.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let stamp = environment.join(".installed-requirements");
     if std::fs::read(&stamp).ok().as_deref() == Some(&wanted) {
         return Ok(Ok(interpreter));
     }
-    let usable = output(Command::new("python3").args(["-c", "import ensurepip, venv"])).is_some();
+    let python = if cfg!(windows) { "python" } else { "python3" };
+    let usable = output(Command::new(python).args(["-c", "import ensurepip, venv"])).is_some();
     if !usable && let Found::No(remedy) = PYTHON.ensure() {
         return Ok(Err(remedy));
     }
     say(&format!("installing the Python packages of {}", requirements.display()));
-    run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&environment))?;
+    run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&environment))?;
     run(Command::new(&interpreter)
         .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"])
         .arg(requirements))?;

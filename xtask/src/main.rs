@@ -4,6 +4,8 @@
 //! - `cargo xtask test`: install what tests need, then every check and test there is;
 //! - `cargo xtask bench`: the solver (or with `--stats` the statistics) and its peers, and their ratios; with
 //!   `--server` the server with a study of a million events;
+//! - `cargo xtask package`: archives, wheel, npm package, container image, Debian package and manifests of package
+//!   managers; with `--check` each of them is installed and run;
 //! - `cargo xtask web`: build the wasm modules and the pages alone.
 
 mod bench;
@@ -18,7 +20,9 @@ mod bench_stats;
 mod budget;
 mod demo;
 mod install;
+mod package;
 mod process;
+mod server;
 mod tally;
 mod test;
 mod web;
@@ -40,6 +44,8 @@ enum Command {
     Test(test::Args),
     /// Measure the solver, or the statistics, beside their peers and print the ratios; or the server
     Bench(bench::Args),
+    /// Make everything that people install, into target/package
+    Package(package::Args),
     /// Build the wasm modules and the pages into target/web-dist
     Web(web::Args),
 }
@@ -49,6 +55,7 @@ fn main() -> anyhow::Result<()> {
         Command::Demo(args) => demo::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Package(args) => package::run(&args),
         Command::Web(args) => web::run(&args),
     }
 }

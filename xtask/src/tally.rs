@@ -10,6 +10,16 @@ use anyhow::{Context, Result};
 
 use crate::process::{say, show};
 
+/// What has become of something that not every machine can do.
+pub enum Tried {
+    /// It is done.
+    Done,
+    /// Not all of it, and why.
+    InPart(String),
+    /// It is not done, and why.
+    Not(String),
+}
+
 /// Tests and checks counted so far.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -52,6 +62,26 @@ impl Tally {
             Ok(()) => self.passed += 1,
             Err(error) => self.fail(format!("{name}: {error:#}")),
         }
+    }
+
+    /// Counts something that is done here, fails, or cannot be done here, which its reason says.
+    pub fn tried(&mut self, name: &str, work: impl FnOnce() -> Result<Tried>) {
+        say(name);
+        let begun = Instant::now();
+        let tried = work();
+        self.took(name, begun);
+        match tried {
+            Ok(Tried::Done) => self.passed += 1,
+            Ok(Tried::InPart(why)) => self.skip(&format!("{name}, in part: {why}")),
+            Ok(Tried::Not(why)) => self.skip(&format!("{name}: {why}")),
+            Err(error) => self.fail(format!("{name}: {error:#}")),
+        }
+    }
+
+    fn skip(&mut self, what: &str) {
+        say(&format!("SKIPPED {what}"));
+        self.skipped += 1;
+        self.skips.push(what.to_owned());
     }
 
     /// Counts one failure.

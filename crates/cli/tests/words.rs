@@ -10,7 +10,7 @@ use common::ok;
 use proc_macro2::{TokenStream, TokenTree};
 
 /// Options that are not ours, by who has them.
-const OF_OTHERS: [&str; 19] = [
+const OF_OTHERS: [&str; 23] = [
     // cargo and its tests
     "--release",
     "--test",
@@ -31,8 +31,14 @@ const OF_OTHERS: [&str; 19] = [
     "--server",
     "--study",
     "--runs",
+    "--check",
+    "--built",
     // chmod's long name, in a recipe
     "--chmod",
+    // podman
+    "--ulimit",
+    // sha256sum
+    "--ignore-missing",
 ];
 
 /// The options of every command, by its words: `account list`. Those of no command stand under "".
