@@ -3,7 +3,8 @@
 /// The pace is that of so many days, or of the study's own time if that is less.
 const DAYS: f64 = 7.0;
 const DAY_MS: f64 = 24.0 * 3600.0 * 1000.0;
-/// Fewer than these tell of no pace.
+/// Fewer than these tell of no pace, nor do they within less than a day: the first minutes of a study would promise
+/// thousands.
 const FEWEST: usize = 2;
 
 /// How far a study is.
@@ -28,7 +29,8 @@ impl Pace {
         let since = now_ms - (window * DAY_MS) as i64;
         // The first one begins the time that is counted, where it is no longer than the study's own.
         let lately = ended_ms.iter().filter(|ended| **ended > since).count();
-        let per_day = (done >= FEWEST && lately > 0).then(|| lately as f64 / window);
+        let tells = done >= FEWEST && lately > 0 && window >= 1.0;
+        let per_day = tells.then(|| lately as f64 / window);
         let left = wanted.map(|wanted| wanted.saturating_sub(done)).filter(|left| *left > 0);
         let full_ms = left
             .zip(per_day)
@@ -65,6 +67,9 @@ mod tests {
         for (ended, wanted) in [(vec![], Some(5)), (vec![0], Some(5)), (vec![0, DAY], None)] {
             assert_eq!(Pace::of(&ended, wanted, 3 * DAY).full_ms, None);
         }
+        // Two within minutes.
+        let fresh = Pace::of(&[0, DAY / 500], Some(9), DAY / 400);
+        assert_eq!((fresh.done, fresh.per_day, fresh.full_ms), (2, None, None));
         // Full, and nobody lately.
         assert_eq!(Pace::of(&[0, DAY], Some(2), 3 * DAY).full_ms, None);
         let idle = Pace::of(&[0, DAY], Some(9), 30 * DAY);

@@ -56,11 +56,12 @@ pub(crate) fn study_page(
                 a href={ "/preview/" (id) } { (frame.say("preview of the stimuli", "aperçu des stimuli")) }
                 " · "
                 a href="/studio" { (frame.say("studio", "studio")) }
+                @if frame.may(Role::Analyst) {
+                    " · "
+                    a href="#export" { (frame.say("export and report", "export et rapport")) }
+                }
             }
             @if let Some(overdue) = &hosting.overdue { (actions::overdue(frame, id, overdue)) }
-            @if frame.may(Role::Analyst) { (exports(frame, id)) }
-            @if frame.may(Role::Owner) { (withdrawal(frame, id)) }
-            @if frame.may(Role::Owner) && hosting.is_uploaded { (actions::hosting(frame, study)) }
         }
         p.live-state role="status" data-live-state=""
             data-on=(frame.say("Live: the page follows what happens.", "En direct : la page suit ce qui se passe."))
@@ -78,6 +79,13 @@ pub(crate) fn study_page(
             (checks(frame, overview))
             @if !overview.distributions.is_empty() {
                 (answers(frame, &overview.distributions, language))
+            }
+        }
+        @if frame.may(Role::Analyst) {
+            div.card #export {
+                (exports(frame, id))
+                @if frame.may(Role::Owner) { (withdrawal(frame, id)) }
+                @if frame.may(Role::Owner) && hosting.is_uploaded { (actions::hosting(frame, study)) }
             }
         }
     };
