@@ -2,6 +2,7 @@
 // there are, with label, range, step and default, comes from the solver's own table.
 import { made } from "../stage/player.js";
 import { say } from "./texts.js";
+import { wordsOf } from "./words-methods.js";
 import { MarkerTable, ShapeTable, describe, number } from "./lists.js";
 
 /// The bounds of a method without soft ones.
@@ -42,7 +43,8 @@ export class Parameters {
 
   // The control of one parameter.
   #control(row) {
-    const label = row.unit ? `${row.label}, ${row.unit}` : row.label;
+    const words = wordsOf(row);
+    const label = row.unit ? `${words.label}, ${row.unit}` : words.label;
     if (row.kind === "word") {
       const select = made("select", { name: row.key }, new Option(say("parameters.default"), ""), ...row.words.map((word) => new Option(word, word)));
       select.addEventListener("change", this.#changed);
@@ -55,7 +57,7 @@ export class Parameters {
     }
     // A share is a slider, which always stands somewhere: one without a default is a number.
     if (row.minimum === 0 && row.maximum === 1 && !row.unit && row.default !== null) return this.#share(row, label);
-    return this.#field(row, label, [this.#number(row, { placeholder: String(row.default ?? row.foundBy) })]);
+    return this.#field(row, label, [this.#number(row, { placeholder: String(row.default ?? words.foundBy) })]);
   }
 
   /// The avatar's blendshapes, those that it locks itself, and the markers on the face.
@@ -86,13 +88,14 @@ export class Parameters {
   }
 
   // A label, its controls, and the place for what is wrong with them.
-  #field({ key, help }, label, controls) {
+  #field(row, label, controls) {
+    const { key } = row;
     const problem = made("p", { className: "problem", id: `${this.#slot}-${key}-problem`, hidden: true });
     const body =
       controls.length === 1
         ? made("label", {}, label, controls[0])
         : made("fieldset", { className: "bare" }, made("legend", {}, label), made("div", { className: "pair" }, ...controls));
-    const field = made("div", { className: "parameter", title: help }, body, problem);
+    const field = made("div", { className: "parameter", title: wordsOf(row).help }, body, problem);
     field.dataset.parameter = key;
     return field;
   }

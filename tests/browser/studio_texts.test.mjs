@@ -49,3 +49,12 @@ test("studio: the page's own HTML has no words in one language", () => {
   assert.deepEqual(words.filter((text) => !neutral.test(text)), []);
   assert.ok(!/\s(?:aria-label|placeholder|title)="/.test(body), "labels come from the table");
 });
+
+test("studio: every parameter of a method has French words, and no other has", async () => {
+  const { TRANSLATED } = await import(pathToFileURL(join(folder, "words-methods.js")));
+  const schema = JSON.parse(readFileSync(join(root, "study-config/schema/study.schema.json"), "utf8"));
+  // What a study file says of a method beside the solver's parameters.
+  const others = ["method", "label", "factors", "training"];
+  const parameters = Object.keys(schema.$defs.Method.properties).filter((key) => !others.includes(key));
+  assert.deepEqual([...TRANSLATED].sort(), parameters.sort());
+});
