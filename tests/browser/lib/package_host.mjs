@@ -30,6 +30,7 @@ export async function packageHost(folders, texts = {}) {
     const path = normalize(decodeURIComponent(new URL(request.url, "http://x").pathname));
     requests.push(path);
     answer.setHeader("access-control-allow-origin", "*");
+    if (path === "/favicon.ico") return answer.writeHead(204).end();
     const found = texts[path] ?? file(folders, path);
     if (found === null) return answer.writeHead(404).end();
     answer.writeHead(200, { "content-type": types[extname(path)] ?? (path in texts ? "text/html" : "application/octet-stream") }).end(found);

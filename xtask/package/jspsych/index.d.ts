@@ -9,7 +9,7 @@ export type TrialClip = DescribedClip | (ClipOfFiles & { avatar: string; capture
 export interface MimiqueParameters {
   clips: TrialClip[];
   in_turn?: boolean;
-  clip_labels?: string[] | null;
+  clip_labels?: string[];
   columns?: number | null;
   clip_size?: number;
   background?: string;

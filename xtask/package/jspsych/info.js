@@ -12,8 +12,8 @@ export const infoOf = (ParameterType) => ({
     clips: { type: ParameterType.COMPLEX, array: true, default: undefined },
     /** Plays the clips one after the other instead of in step. */
     in_turn: { type: ParameterType.BOOL, default: false },
-    /** Words above the clips, one for each. */
-    clip_labels: { type: ParameterType.STRING, array: true, default: null },
+    /** Words above the clips, one for each; empty for none. */
+    clip_labels: { type: ParameterType.STRING, array: true, default: [] },
     /** How many clips stand in a row; null for what the page has room for. */
     columns: { type: ParameterType.INT, default: null },
     /** Width and height of a clip in CSS pixels; a narrow page makes them smaller. */

@@ -119,7 +119,7 @@ function checked(trial) {
   if (!Array.isArray(clips) || clips.length < 1 || clips.length > MOST_CLIPS) {
     throw wrong(`clips: ${Array.isArray(clips) ? clips.length : JSON.stringify(clips)}; give a list of 1 to ${MOST_CLIPS} clips`);
   }
-  if (labels && labels.length !== clips.length) throw wrong(`clip_labels: ${labels.length} for ${clips.length} clips; give one for each`);
+  if (labels.length > 0 && labels.length !== clips.length) throw wrong(`clip_labels: ${labels.length} for ${clips.length} clips; give one for each`);
   if (choices.length > 0 && keys.length > choices.length) {
     throw wrong(`keys: ${keys.length} for ${choices.length} choices; give at most one key for each, or no choices`);
   }

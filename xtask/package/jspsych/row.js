@@ -42,7 +42,7 @@ export class Row {
     const kept = parked ? [...parked.children] : [];
     this.#elements = this.#trial.clips.map((clip, k) => {
       const element = kept[k] ?? document.createElement("mimique-stage");
-      const label = this.#trial.clip_labels?.[k];
+      const label = this.#trial.clip_labels[k];
       const figure = document.createElement("figure");
       Object.assign(figure.style, { margin: "0" });
       if (label) {

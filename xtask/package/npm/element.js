@@ -99,6 +99,7 @@ export class MimiqueStage extends HTMLElement {
 
   /** Resolves with the summary once the clip stands on the stage. Rejects with what is wrong. */
   get ready() {
+    if (!this.isConnected) return Promise.reject(detached());
     if (this.#scheduled || !this.#loading) this.#start();
     return this.#loading;
   }
@@ -121,11 +122,12 @@ export class MimiqueStage extends HTMLElement {
       },
       end: (now) => told?.end?.(now),
     };
+    const clips = all.map((element) => element.#clip.name);
     for (const element of all) element.#become("playing");
     try {
       const others = beside.map((element) => ({ stage: element.#stage, clipId: element.#clip.id }));
       const log = await this.#stage.play(this.#clip.id, { beside: others, inTurn, heard, told: tell });
-      const whole = { ...log, renderer: log.renderer || `@mimique/stage@${VERSION}`, clips: all.map((element) => element.#clip.name) };
+      const whole = { ...log, renderer: log.renderer || `@mimique/stage@${VERSION}`, clips };
       for (const element of all) element.#played(whole);
       return whole;
     } finally {
@@ -186,7 +188,6 @@ export class MimiqueStage extends HTMLElement {
   }
 
   async #show(given, number) {
-    if (!this.isConnected) throw detached();
     const progress = (part) => number === this.#load && this.#tell("stage-progress", { part });
     const [clip, stage] = await Promise.all([prepared(given, progress), this.#opened(given)]);
     if (number !== this.#load) return this.#overtaken();
@@ -256,10 +257,12 @@ export class MimiqueStage extends HTMLElement {
   }
 
   #played(log) {
-    if (this.#state !== "playing") return;
-    if (log.aborted === null) this.#time = this.duration;
-    this.#become("ready");
-    if (this.#stale) this.#redraw();
+    // One that left the page meanwhile stays as it is.
+    if (this.#state === "playing") {
+      if (log.aborted === null) this.#time = this.duration;
+      this.#become("ready");
+      if (this.#stale) this.#redraw();
+    }
     this.#tell("stage-played", log);
   }
 
