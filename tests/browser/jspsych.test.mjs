@@ -7,6 +7,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { infoOf } from "../../xtask/package/jspsych/info.js";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { taken } from "./lib/guide_picture.mjs";
 import { exportedClips } from "./lib/exported_clips.mjs";
 import { packageHost, unpacked } from "./lib/package_host.mjs";
 import { root } from "./lib/server.mjs";
@@ -199,4 +200,18 @@ test("jspsych: the package's page and types name every parameter and column", ()
     assert.ok(page.includes(`\n| \`${name}\` |`), `column ${name} in README.md`);
     assert.ok(types.includes(`  ${name}: `), `column ${name} in index.d.ts`);
   }
+});
+
+test("jspsych: the picture of the guide", { skip: unable, timeout: 240_000 }, async () => {
+  const { page } = browser;
+  await page.setViewportSize({ width: 780, height: 520 });
+  const pair = { clips: [SOFT, BOX], clip_labels: ["A", "B"], prompt: "<p>Which face moves more?</p>", choices: ["A", "B"], clip_size: 300 };
+  await timeline([pair], async () => {
+    await page.waitForSelector("button:enabled:text-is('B')", { timeout: 90_000 });
+    await page.mouse.move(0, 0);
+    await page.evaluate(() => Promise.all([...document.querySelectorAll("mimique-stage")].map((stage) => stage.seek(stage.duration / 2))));
+    await taken(page, "stage-jspsych.jpg");
+    await button(page, "B").click();
+  });
+  await page.setViewportSize({ width: 1280, height: 900 });
 });

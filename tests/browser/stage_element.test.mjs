@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { taken } from "./lib/guide_picture.mjs";
 import { exportedClips } from "./lib/exported_clips.mjs";
 import { packageHost, unpacked } from "./lib/package_host.mjs";
 import { mimique } from "./lib/server.mjs";
@@ -172,7 +173,7 @@ test("element: a clip of files has the bits of mimique solve", { skip: unable, t
   const found = await page.evaluate(async () => {
     const [stage] = stages;
     const whole = await stage.ready;
-    stage.frames = "60:120";
+    stage.frames = "60:360";
     const part = await stage.ready;
     const log = await stage.play();
     // Files that somebody chose, and weights that were recorded.
@@ -182,7 +183,7 @@ test("element: a clip of files has the bits of mimique solve", { skip: unable, t
     return { whole, part, log, recorded: await stage.ready, state: stage.state, words: stage.shadowRoot.querySelector("p").textContent };
   });
   assert.equal(found.whole.weights_hash, report.weights_hash);
-  assert.deepEqual([found.part.frames, found.part.clip, found.part.weights_hash], [60, "take.c3d 60:120", ""]);
+  assert.deepEqual([found.part.frames, found.part.clip, found.part.weights_hash], [300, "take.c3d 60:360", ""]);
   assert.ok(found.log.frames.length > 3 && found.log.provenance.length === 64);
   assert.deepEqual([found.recorded.clip, found.state, found.words], ["weights.csv", "ready", ""]);
 });
@@ -196,7 +197,7 @@ test("element: what is wrong is said with its place, value and remedy", { skip: 
     [{ src: "/empty.json" }, "description", /avatar is missing instead of a text; take it as mimique describes it/],
     [{ src: "/site/site.json" }, "attribute", /2 clips are described there, and attribute clip is empty; name one of: joy2\.box, joy2\.soft$/],
     [{ ...SITE, clip: "joy3" }, "attribute", /^mimique-stage: clip="joy3": no such clip is described there; there are: joy2\.box, joy2\.soft$/],
-    [{ ...SITE, packs: "/nowhere/" }, "refused", /^mimique-stage: pack [0-9a-f]{12}: the server answered 404$/],
+    [{ ...SITE, packs: "/nowhere/" }, "refused", /^mimique-stage: clip joy2\.box: pack [0-9a-f]{12}: the server answered 404; asked was http:\S+\/nowhere: let packs name the folder that has them$/],
     [{ ...SITE, avatar: "built-in" }, "attribute", /a clip is given in 2 ways \(src, avatar\)/],
     [{ avatar: "built-in" }, "attribute", /avatar is given, capture is not; give the address of a capture/],
     [{ avatar: "built-in", capture: "built-in", method: "{" }, "attribute", /^mimique-stage: method="\{": no JSON .*write a name/],
@@ -248,13 +249,15 @@ test("element: from another host, as a content delivery network has it", { skip:
 test("element: the example of the package is solved and played without a build step", { skip: unable, timeout: 240_000 }, async () => {
   const { page, errors } = browser;
   errors.length = 0;
+  await page.setViewportSize({ width: 780, height: 860 });
   await page.goto(`${host.url}/node_modules/@mimique/stage/example/index.html?backend=webgl2`);
   await page.getByRole("button", { name: "Play" }).click({ timeout: 120_000 });
   await page.waitForFunction(() => /^\d+ frames: /.test(document.getElementById("log").textContent), null, { timeout: 60_000 });
   assert.match(await page.locator("#log").textContent(), /"aborted": null/);
   await page.evaluate(() => (document.getElementById("time").value = 500, document.getElementById("time").dispatchEvent(new Event("input"))));
-  await page.waitForTimeout(500);
-  await page.screenshot({ path: join(screenshotFolder("stage_element"), "example.png"), fullPage: true });
+  await page.waitForFunction(() => [...document.querySelectorAll("mimique-stage")].every((stage) => stage.time === stage.duration / 2));
+  await page.waitForTimeout(1000);
+  await taken(page, "stage-element.jpg");
   await page.setViewportSize({ width: 390, height: 800 });
   await page.waitForTimeout(500);
   await page.screenshot({ path: join(screenshotFolder("stage_element"), "example-narrow.png"), fullPage: true });

@@ -5,6 +5,9 @@
 import { prepareClip } from "./modules/stage/host.js";
 import { StageProblem } from "./problem.js";
 
+// What a pack fails with that does not arrive.
+const FETCHING = ["connection", "damaged", "refused", "stalled"];
+
 // Descriptions by their address: a study's clips are asked for once.
 const described = new Map();
 
@@ -24,7 +27,10 @@ export async function prepared(given, onProgress = () => {}) {
   const packs = given.packs ? absolute("packs", given.packs).replace(/\/$/, "") : source.packs || folder;
   // Clips of one name may come from several studies.
   const id = `${name}@${source.provenance.slice(0, 16)}`;
-  const summary = await prepareClip(id, packs ? { ...source, packs } : source, onProgress);
+  const summary = await prepareClip(id, packs ? { ...source, packs } : source, onProgress).catch((error) => {
+    if (!FETCHING.includes(error.code)) throw error;
+    throw new StageProblem(error.code, `mimique-stage: clip ${name}: ${error.message}; asked was ${packs || "/packs"}: let packs name the folder that has them`, error);
+  });
   return { id, name, summary: { ...summary, clip: name } };
 }
 
@@ -51,7 +57,8 @@ async function at({ src, clip }) {
 }
 
 function checked(source, name) {
-  const wrong = (why) => new StageProblem("description", `mimique-stage: the description of clip ${name}: ${why}; take it as mimique describes it (clips of site.json, or of /api/studies/STUDY)`);
+  const of = name === "clip" ? "the clip" : `clip ${name}`;
+  const wrong = (why) => new StageProblem("description", `mimique-stage: the description of ${of}: ${why}; take it as mimique describes it (clips of site.json, or of /api/studies/STUDY)`);
   if (source === null || typeof source !== "object") throw wrong(`${JSON.stringify(source)} is no object`);
   for (const key of ["avatar", "operators", "take", "provenance"]) {
     if (typeof source[key] !== "string") throw wrong(`${key} is ${JSON.stringify(source[key]) ?? "missing"} instead of a text`);

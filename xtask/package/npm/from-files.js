@@ -45,11 +45,11 @@ async function solve(given, onProgress) {
   const settingsText = settings && new TextDecoder().decode(settings.bytes);
   await (avatar ? callWorker("avatarFile", avatar.name, avatar.bytes, settingsText ?? undefined) : callWorker("builtInAvatar", BUILT_IN.seed, BUILT_IN.vertices));
   onProgress(0.5);
-  const rate = given.rate === undefined || given.rate === "" ? undefined : numberOf("rate", given.rate);
+  const rate = !given.rate ? undefined : numberOf("rate", given.rate);
   const take = await (capture ? callWorker("takeFile", capture.name, capture.bytes, given.unit || undefined, rate) : callWorker("builtInTake", BUILT_IN.actor));
   if (take.kind === "markers") await placeMarkers(map);
   onProgress(0.6);
-  if (take.kind === "weights" && given.method === undefined) method.method = "recorded";
+  if (take.kind === "weights" && !given.method) method.method = "recorded";
   const facts = await callWorker("solve", "a", JSON.stringify(method));
   if (facts.problems) {
     const words = facts.problems.map(({ place, text }) => `${place}: ${text}`).join("; ");
@@ -113,7 +113,7 @@ async function bytesOf(attribute, value) {
 
 // A MethodSpec: its name alone, or JSON, or an object.
 function methodOf(value) {
-  if (value === undefined || value === "") return { method: "lsts" };
+  if (!value) return { method: "lsts" };
   if (typeof value === "object") return { ...value };
   if (!value.trimStart().startsWith("{")) return { method: value.trim() };
   try {
@@ -131,7 +131,7 @@ function numberOf(attribute, value) {
 
 // "first:end" of so many frames.
 function rangeOf(value, frames) {
-  if (value === undefined || value === "") return [0, frames];
+  if (!value) return [0, frames];
   const [, first, end] = /^(\d+):(\d+)$/.exec(value) ?? [];
   if (end === undefined || Number(first) >= Number(end) || Number(end) > frames) {
     throw StageProblem.ofAttribute("frames", value, `no part of the ${frames} frames of the capture`, `write FIRST:END, such as 0:${frames}`);
