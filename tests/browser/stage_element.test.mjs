@@ -249,7 +249,7 @@ test("element: from another host, as a content delivery network has it", { skip:
 test("element: the example of the package is solved and played without a build step", { skip: unable, timeout: 240_000 }, async () => {
   const { page, errors } = browser;
   errors.length = 0;
-  await page.setViewportSize({ width: 780, height: 860 });
+  await page.setViewportSize({ width: 780, height: 600 });
   await page.goto(`${host.url}/node_modules/@mimique/stage/example/index.html?backend=webgl2`);
   await page.getByRole("button", { name: "Play" }).click({ timeout: 120_000 });
   await page.waitForFunction(() => /^\d+ frames: /.test(document.getElementById("log").textContent), null, { timeout: 60_000 });
