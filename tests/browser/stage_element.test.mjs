@@ -164,6 +164,30 @@ test("element: moved it keeps its canvas, taken out it gives it back, and it com
   assert.deepEqual([found.refused, found.again, found.lost], ["detached", null, false]);
 });
 
+test("element: by WebGPU it plays, goes and comes back, too", { skip: unable, timeout: 180_000 }, async () => {
+  const own = await open("webgpu");
+  try {
+    await own.page.goto(`${host.url}/page?backend=webgpu`);
+    const found = await own.page.evaluate(async (attributes) => {
+      await customElements.whenDefined("mimique-stage");
+      const stage = document.createElement("mimique-stage");
+      Object.assign(stage, attributes);
+      document.body.append(stage);
+      const first = await stage.play();
+      stage.remove();
+      await new Promise((done) => setTimeout(done, 100));
+      const { state } = stage;
+      document.body.append(stage);
+      const second = await stage.play();
+      return { state, logs: [first, second].map(({ backend, aborted, weights_hash: hash }) => [backend, aborted, hash]) };
+    }, SITE);
+    const log = ["webgpu", null, exported.clips["joy2.box"].weights_hash];
+    assert.deepEqual(found, { state: "empty", logs: [log, log] });
+  } finally {
+    await own.close();
+  }
+});
+
 test("element: a clip of files has the bits of mimique solve", { skip: unable, timeout: 240_000 }, async () => {
   const file = (name) => join(samples, name);
   const settings = JSON.stringify({ method: "lsts", alpha: 0.3 });
