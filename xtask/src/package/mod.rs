@@ -256,7 +256,8 @@ impl Packaging<'_> {
         });
         if let (Some(packages), true) = (packages, self.args.check) {
             // Asked for alone there is no static program: what `cargo build` left draws as well.
-            let built = || Some(target().join("release").join(facts::NAME)).filter(|path| path.exists());
+            let built =
+                || Some(target().join("release").join(facts::NAME)).filter(|path| path.exists());
             let program = self.own_program().map(Path::to_owned).or_else(built);
             let check = || npm::check(&packages, program.as_deref(), work.path());
             self.tally.tried(&checked(Kind::Npm.name()), check);
