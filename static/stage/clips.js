@@ -1,4 +1,5 @@
 // Clips: packs fetched, weights solved in the worker, kept in memory.
+import { moduleWorker } from "../module-worker.js";
 import { sendPanic } from "../panics.js";
 import { loadAhead } from "./backend.js";
 import { failureOf, StageFailure } from "./failure.js";
@@ -91,11 +92,11 @@ async function prepare(clipId, source, onProgress) {
     if (source.bytes > 0) report(0.9 * Math.min(received / source.bytes, 1));
   };
   report(0);
-  const sound = source.sound && soundOf(source.sound, count);
+  const sound = source.sound && soundOf(source.sound, count, source.packs);
   // What goes wrong with it is said below, once the rest is there.
   sound?.catch(() => {});
   if (source.video) {
-    const bytes = await fetchPack(source.avatar, count);
+    const bytes = await fetchPack(source.avatar, count, source.packs);
     const video = URL.createObjectURL(new Blob([bytes], { type: source.video }));
     const duration_ms = await videoDuration(video).catch((error) => {
       URL.revokeObjectURL(video);
@@ -106,7 +107,7 @@ async function prepare(clipId, source, onProgress) {
     return { clip: clipId, video, duration_ms, ...nothing, sound: await sound, provenance: source.provenance, report: null, warnings: [] };
   }
   if (source.units) {
-    const [face, avatar] = await Promise.all([faceOf(source), fetchPack(source.avatar, count)]);
+    const [face, avatar] = await Promise.all([faceOf(source), fetchPack(source.avatar, count, source.packs)]);
     loadAhead();
     const pictures = await picturesOf(avatar);
     report(1);
@@ -117,7 +118,7 @@ async function prepare(clipId, source, onProgress) {
   worker ??= startWorker();
   loadAhead();
   const [avatar, operators, take] = await Promise.all(
-    [source.avatar, source.operators, source.take].map((hash) => fetchPack(hash, count)),
+    [source.avatar, source.operators, source.take].map((hash) => fetchPack(hash, count, source.packs)),
   );
   report(0.9);
   const [solved, pictures] = await Promise.all([
@@ -162,11 +163,11 @@ async function faceOf(source) {
 }
 
 // Studies without sound load nothing for it.
-async function soundOf(source, count) {
+async function soundOf(source, count, packs) {
   const load = import("../sound/sound.js").catch((error) => {
     throw failureOf(error, "module");
   });
-  const [{ loadSound }, bytes] = await Promise.all([load, fetchPack(source.file, count)]);
+  const [{ loadSound }, bytes] = await Promise.all([load, fetchPack(source.file, count, packs)]);
   return loadSound(source, bytes);
 }
 
@@ -207,7 +208,7 @@ function solve(operators, take, method) {
 }
 
 function startWorker() {
-  const started = new Worker(new URL("./solver-worker.js", import.meta.url), { type: "module" });
+  const started = moduleWorker(new URL("./solver-worker.js", import.meta.url));
   started.onmessage = ({ data }) => {
     if (data.panic) return sendPanic(data.panic);
     const job = jobs.get(data.id);

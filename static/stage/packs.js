@@ -12,8 +12,8 @@ const packs = new Map();
 const elsewhere = globalThis.document?.querySelector('meta[name="mimique-packs"]')?.content || "/packs";
 
 /// The bytes of a pack. `onBytes(count)` is told of every piece that arrives; a try that fails
-/// takes its pieces back with a negative count.
-export function fetchPack(hash, onBytes = () => {}) {
+/// takes its pieces back with a negative count. `folder`: the address of a folder that alone is asked.
+export function fetchPack(hash, onBytes = () => {}, folder = "") {
   let kept = packs.get(hash);
   if (!kept) {
     kept = { listeners: new Set(), received: 0 };
@@ -21,7 +21,7 @@ export function fetchPack(hash, onBytes = () => {}) {
       kept.received += count;
       for (const listener of kept.listeners) listener(count);
     };
-    kept.bytes = fetchWithRetry(hash, tell);
+    kept.bytes = fetchWithRetry(hash, tell, folder ? [folder] : [elsewhere, "/packs"]);
     // A pack that could not be had is asked for again the next time.
     kept.bytes.catch(() => packs.delete(hash));
     packs.set(hash, kept);
@@ -31,21 +31,20 @@ export function fetchPack(hash, onBytes = () => {}) {
   return kept.bytes.finally(() => kept.listeners.delete(onBytes));
 }
 
-async function fetchWithRetry(hash, tell) {
+async function fetchWithRetry(hash, tell, places) {
   let reason;
   for (let attempt = 0; attempt < TRIES; attempt++) {
     if (attempt > 0) await pause(Math.min(500 * 2 ** (attempt - 1), 8000));
     let received = 0;
     try {
-      const place = attempt % 2 === 0 ? elsewhere : "/packs";
-      return await fetchOnce(`${place}/${hash}`, hash, (count) => {
+      return await fetchOnce(`${places[attempt % places.length]}/${hash}`, hash, (count) => {
         received += count;
         tell(count);
       });
     } catch (error) {
       tell(-received);
       reason = error;
-      if (error.final && elsewhere === "/packs") break;
+      if (error.final && places.every((place) => place === places[0])) break;
     }
   }
   throw failureOf(reason, "connection", `pack ${hash.slice(0, 12)}: `);

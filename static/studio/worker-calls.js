@@ -1,5 +1,6 @@
 // Calls of the studio's worker as promises. JSON answers come parsed.
 
+import { moduleWorker } from "../module-worker.js";
 import { sendPanic } from "../panics.js";
 
 const JSON_CALLS = new Set([
@@ -28,7 +29,7 @@ export function callWorker(call, ...args) {
 }
 
 function start() {
-  const started = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  const started = moduleWorker(new URL("./worker.js", import.meta.url));
   started.onmessage = ({ data }) => {
     if (data.panic) return sendPanic(data.panic);
     const job = jobs.get(data.id);

@@ -1,46 +1,43 @@
-// The npm package as a page of somebody else embeds it: `node stage_package.mjs FOLDER` (`cargo xtask package --check`
-// runs it). The page lies on a host of its own that hands packs on from `mimique serve`; a clip is solved and drawn.
+// The npm packages as pages of somebody else embed them: `node stage_package.mjs NODE_MODULES` (`cargo xtask package --check`
+// runs it). The pages lie on a host of their own: a clip of `mimique serve` is solved and drawn, and the packages' own examples
+// are opened and used.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { extname, join, normalize } from "node:path";
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { open, screenshotFolder } from "./lib/browser.mjs";
+import { packageHost } from "./lib/package_host.mjs";
 import { serve } from "./lib/server.mjs";
 
-const folder = process.argv[2];
-const types = { ".js": "text/javascript", ".wasm": "application/wasm" };
-const page = `<!doctype html><meta charset="utf-8"><title>Embedding</title>
-<script type="importmap">{ "imports": { "@mimique/stage": "/stage/index.js" } }</script>
-<canvas id="face"></canvas>`;
-
-/** The embedding page's host. */
-function host(packs) {
-  const answering = createServer(async (request, answer) => {
-    const path = normalize(new URL(request.url, "http://x").pathname);
-    try {
-      if (path === "/") return answer.writeHead(200, { "content-type": "text/html" }).end(page);
-      if (path.startsWith("/packs/")) {
-        const pack = await fetch(`${packs}${path}`);
-        return answer.writeHead(pack.status).end(Buffer.from(await pack.arrayBuffer()));
-      }
-      const type = types[extname(path)] ?? "application/octet-stream";
-      const file = readFileSync(join(folder, path.replace(/^\/stage\//, "")));
-      answer.writeHead(200, { "content-type": type }).end(file);
-    } catch {
-      answer.writeHead(404).end();
-    }
-  });
-  return new Promise((done) => answering.listen(0, "127.0.0.1", () => done(answering)));
-}
+const page = `<!doctype html><html lang="en"><meta charset="utf-8"><title>Embedding</title>
+<script type="importmap">{ "imports": { "@mimique/stage": "/node_modules/@mimique/stage/index.js" } }</script>
+<canvas id="face"></canvas></html>`;
+const shots = screenshotFolder("package");
 
 const server = await serve(["study-config/demo.json"]);
-const embedding = await host(server.url);
+const packs = mkdtempSync(join(tmpdir(), "mimique-packs-"));
+const host = await packageHost({ "/packs/": packs, "/node_modules/": process.argv[2] }, { "/": page });
 const browser = await open("webgl2");
 try {
+  await drawn();
+  await exampleOfElement();
+  await exampleOfPlugin();
+  assert.deepEqual(browser.errors, [], "the console is clean");
+} finally {
+  await browser.close();
+  await host.close();
+  await server.stop();
+}
+
+/** A clip by the modules alone. */
+async function drawn() {
   const { clips } = await (await fetch(`${server.url}/api/studies/demo`)).json();
   const [id, source] = Object.entries(clips)[0];
-  await browser.page.goto(`http://127.0.0.1:${embedding.address().port}/`);
+  for (const hash of [source.avatar, source.operators, source.take].filter(Boolean)) {
+    writeFileSync(join(packs, hash), Buffer.from(await (await fetch(`${server.url}/packs/${hash}`)).arrayBuffer()));
+  }
+  await browser.page.goto(`${host.url}/`);
   const found = await browser.page.evaluate(
     async ([id, source]) => {
       const { openStage, prepareClip } = await import("@mimique/stage");
@@ -55,11 +52,27 @@ try {
   assert.equal(found.solved.weights_hash, source.weights_hash, "the package's solver has other bits than the server");
   assert.deepEqual([found.state.backend, found.state.lost, found.aborted], ["webgl2", null, null]);
   assert.ok(found.frames > 3, `${found.frames} frames`);
-  const file = join(screenshotFolder("package"), "embedding.png");
-  await browser.page.locator("#face").screenshot({ path: file });
+  await browser.page.locator("#face").screenshot({ path: join(shots, "embedding.png") });
   console.log(`drawn in another page: clip ${id}, ${found.solved.frames} frames solved, ${found.frames} shown, ${found.solved.warnings.length} warnings`);
-} finally {
-  await browser.close();
-  embedding.close();
-  await server.stop();
+}
+
+/** Two elements, solved of files and played in step. */
+async function exampleOfElement() {
+  const { page } = browser;
+  await page.goto(`${host.url}/node_modules/@mimique/stage/example/index.html`);
+  await page.getByRole("button", { name: "Play" }).click({ timeout: 120_000 });
+  await page.waitForFunction(() => /^\d+ frames: [^]*"aborted": null/.test(document.getElementById("log").textContent), null, { timeout: 60_000 });
+  await page.screenshot({ path: join(shots, "element.png") });
+  console.log("example of the element: solved and played in step");
+}
+
+/** A timeline of jsPsych: the first trial is answered, the second one comes. */
+async function exampleOfPlugin() {
+  const { page } = browser;
+  await page.goto(`${host.url}/node_modules/@mimique/jspsych-plugin/example/index.html`);
+  await page.waitForSelector("button:enabled:text-is('joy')", { timeout: 120_000 });
+  await page.getByRole("button", { name: "joy" }).click();
+  await page.waitForFunction(() => document.querySelectorAll("#jspsych-content mimique-stage").length === 2, null, { timeout: 60_000 });
+  await page.screenshot({ path: join(shots, "plugin.png") });
+  console.log("example of the plugin: one trial answered, the next one shown");
 }

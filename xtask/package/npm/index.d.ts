@@ -35,6 +35,8 @@ export interface ClipSource {
   provenance: string;
   /** SHA-256 of the weights as the server solved them; empty for a video. */
   weights_hash: string;
+  /** Address of the folder of the packs; without it those that `fetchPack` asks. */
+  packs?: string;
   /** Without it `stimulus`. */
   look?: Look;
   /** Media type of a video. */
@@ -122,9 +124,9 @@ export function putClip(clip: SolvedClip): Promise<void>;
 /**
  * The bytes of a pack by its SHA-256, fetched once and checked, from `/packs/HASH` or from the address that the page's
  * `<meta name="mimique-packs">` names. `onBytes` is told of every piece; a try that fails takes its pieces back with a
- * negative count.
+ * negative count. `folder` names the only address that is asked.
  */
-export function fetchPack(hash: string, onBytes?: (count: number) => void): Promise<Uint8Array>;
+export function fetchPack(hash: string, onBytes?: (count: number) => void, folder?: string): Promise<Uint8Array>;
 
 /** The median interval between two frames of the display, measured once; `anew` measures it again. */
 export function refreshPeriod(anew?: boolean): Promise<number>;

@@ -21,7 +21,8 @@ pub const PAGES: [&str; 5] = [
     "mimique-web-studio",
 ];
 /// The crates of the npm package.
-pub const STAGE: [&str; 3] = ["mimique-web-adaptive", "mimique-web-solver", "mimique-web-stage"];
+pub const STAGE: [&str; 4] =
+    ["mimique-web-adaptive", "mimique-web-solver", "mimique-web-stage", "mimique-web-studio"];
 /// The target of the pages.
 pub const WASM: &str = "wasm32-unknown-unknown";
 

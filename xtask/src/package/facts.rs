@@ -2,8 +2,10 @@
 
 /// Name of the program and of its packages.
 pub const NAME: &str = "mimique";
-/// Name of the npm package of canvas and worker.
+/// Name of the npm package of element, canvas and worker.
 pub const STAGE: &str = "@mimique/stage";
+/// Name of the npm package of the plugin of jsPsych.
+pub const JSPSYCH_PLUGIN: &str = "@mimique/jspsych-plugin";
 /// The version of the workspace.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The licence of the workspace, an SPDX expression.

@@ -7,7 +7,7 @@
 //! | `wheel` | `mimique` for pip and uvx |
 //! | `debian` | the Debian package |
 //! | `image` | the container image |
-//! | `npm` | `@mimique/stage`: canvas and solver for other pages |
+//! | `npm` | `@mimique/stage`: element, canvas and solver for other pages; `@mimique/jspsych-plugin` |
 //! | `site` | the demonstration as plain files, with the report of simulated participants |
 //! | `homebrew`, `winget` | manifests that name the archives by their SHA-256 |
 //!
@@ -86,7 +86,7 @@ impl Kind {
             Self::Wheel => "wheel",
             Self::Debian => "Debian package",
             Self::Image => "container image",
-            Self::Npm => "npm package",
+            Self::Npm => "npm packages",
             Self::Site => "demonstration",
             Self::Homebrew => "formula of Homebrew",
             Self::Winget => "manifests of winget",
@@ -249,14 +249,17 @@ impl Packaging<'_> {
 
     fn npm(&mut self) -> Result<()> {
         let work = tempfile::tempdir()?;
-        let mut package = None;
+        let mut packages = None;
         self.tally.tried(Kind::Npm.name(), || {
-            package = Some(npm::make(&self.out, work.path())?);
+            packages = Some(npm::make(&self.out, work.path())?);
             Ok(Tried::Done)
         });
-        if let (Some(package), true) = (package, self.args.check) {
-            let program = self.own_program().map(Path::to_owned);
-            let check = || npm::check(&package, program.as_deref(), work.path());
+        if let (Some(packages), true) = (packages, self.args.check) {
+            // Asked for alone there is no static program: what `cargo build` left draws as well.
+            let built =
+                || Some(target().join("release").join(facts::NAME)).filter(|path| path.exists());
+            let program = self.own_program().map(Path::to_owned).or_else(built);
+            let check = || npm::check(&packages, program.as_deref(), work.path());
             self.tally.tried(&checked(Kind::Npm.name()), check);
         }
         Ok(())

@@ -1,26 +1,31 @@
-//! The npm package `@mimique/stage`: the modules of canvas and solver from the finished pages, an index that exports
-//! what `static/stage/host.js` exports, and its types. `npm pack` packs it.
+//! The npm packages: `@mimique/stage`, the modules of canvas, solver and studio from the finished pages with the element
+//! `<mimique-stage>`, an index that exports what `static/stage/host.js` exports, and types; and `@mimique/jspsych-plugin`.
+//! `npm pack` packs them.
+
+mod check;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, bail};
 use serde_json::json;
 
 use super::check::answer;
 use super::contents::Terms;
-use super::facts::{LICENCE, PUBLISHER, REPOSITORY, STAGE, VERSION};
+use super::facts::{JSPSYCH_PLUGIN, LICENCE, PUBLISHER, REPOSITORY, STAGE, VERSION};
 use super::files::{self, File};
-use crate::install::{self, Found};
+use crate::install;
 use crate::process::root;
-use crate::tally::Tried;
 use crate::web;
 
-/// Which of the pages' files belong to it: these, and what lies in these folders.
-const MODULES: [&str; 11] = [
+pub use self::check::check;
+
+/// Which of the pages' files belong to the stage: these, and what lies in these folders.
+const MODULES: [&str; 15] = [
     "adaptive.js",
     "adaptive_bg.wasm",
     "adaptive/faces.js",
+    "module-worker.js",
     "panics.js",
     "snippets/",
     "solver.js",
@@ -29,34 +34,56 @@ const MODULES: [&str; 11] = [
     "stage/",
     "stage_webgl",
     "stage_webgpu",
+    "studio.js",
+    "studio/worker",
+    "studio_bg.wasm",
 ];
 /// Belongs to the researchers' pages.
 const LEFT_OUT: &str = "stage/player.js";
 
-/// Packs it.
-pub fn make(out: &Path, work: &Path) -> Result<PathBuf> {
-    let mut whole = templates()?;
+/// The packed packages.
+pub struct Packages {
+    /// `@mimique/stage`.
+    pub stage: PathBuf,
+    /// `@mimique/jspsych-plugin`.
+    pub jspsych_plugin: PathBuf,
+}
+
+/// Packs both.
+pub fn make(out: &Path, work: &Path) -> Result<Packages> {
+    let mut stage = templates("xtask/package/npm")?;
     for file in files::below(&web::dist())? {
         if MODULES.iter().any(|name| file.name.starts_with(name)) && file.name != LEFT_OUT {
-            whole.push(file.within("modules"));
+            stage.push(file.within("modules"));
         }
     }
-    imports_lead_somewhere(&whole)?;
-    whole.push(File::text("package.json", manifest()));
-    whole.extend(Terms::of_stage()?.files());
-    let folder = work.join("npm");
-    files::write_below(&folder, &whole)?;
+    imports_lead_somewhere(&stage)?;
+    stage.push(File::text("package.json", stage_manifest()));
+    stage.extend(Terms::of_stage()?.files());
+    let mut plugin = templates("xtask/package/jspsych")?;
+    plugin.push(File::text("package.json", plugin_manifest()));
+    for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
+        plugin.push(File::of_repository(licence, licence)?);
+    }
+    Ok(Packages {
+        stage: packed(&stage, out, &work.join("npm"))?,
+        jspsych_plugin: packed(&plugin, out, &work.join("jspsych"))?,
+    })
+}
+
+fn packed(whole: &[File], out: &Path, folder: &Path) -> Result<PathBuf> {
+    files::write_below(folder, whole)?;
     let mut pack = Command::new(install::NPM);
     pack.args(["pack", "--silent", "--ignore-scripts", "--pack-destination"])
         .arg(out)
-        .current_dir(&folder);
+        .current_dir(folder);
     let name = answer(&mut pack)?;
     Ok(out.join(name.trim()))
 }
 
-/// Index, types and page.
-fn templates() -> Result<Vec<File>> {
-    let mut found = files::below(&root().join("xtask/package/npm"))?;
+/// What of a package is written by hand: its scripts, types, example and page.
+fn templates(folder: &str) -> Result<Vec<File>> {
+    let mut found = files::below(&root().join(folder))?;
     for page in found.iter_mut().filter(|file| file.name == "README.md") {
         page.bytes =
             String::from_utf8_lossy(&page.bytes).replace("{repository}", REPOSITORY).into_bytes();
@@ -64,23 +91,48 @@ fn templates() -> Result<Vec<File>> {
     Ok(found)
 }
 
-fn manifest() -> String {
+fn stage_manifest() -> String {
     let manifest = json!({
         "name": STAGE,
         "version": VERSION,
-        "description": "Canvas and solver of Mimique: faces of avatars solved from captures and drawn in the browser",
+        "description": "Faces of avatars solved from captures and drawn in the browser: an element, canvas and solver of Mimique",
         "author": PUBLISHER,
         "license": LICENCE,
         "repository": { "type": "git", "url": format!("git+{REPOSITORY}.git") },
         "type": "module",
         "exports": {
             ".": { "types": "./index.d.ts", "default": "./index.js" },
+            "./element.js": { "types": "./element.d.ts", "default": "./element.js" },
             "./modules/*": "./modules/*",
             "./package.json": "./package.json",
         },
         "types": "./index.d.ts",
-        "files": ["index.js", "index.d.ts", "modules", "LICENSE-*", "THIRD-PARTY-LICENCES.txt", "sbom.cdx.json"],
-        "sideEffects": ["./modules/stage/solver-worker.js"],
+        "files": ["*.js", "*.d.ts", "example", "modules", "LICENSE-*", "THIRD-PARTY-LICENCES.txt", "sbom.cdx.json"],
+        "sideEffects": ["./element.js", "./modules/stage/solver-worker.js", "./modules/studio/worker.js"],
+        "publishConfig": { "access": "public" },
+    });
+    format!("{manifest:#}\n")
+}
+
+fn plugin_manifest() -> String {
+    let manifest = json!({
+        "name": JSPSYCH_PLUGIN,
+        "version": VERSION,
+        "description": "plugin-mimique: jsPsych trials with one to nine clips of avatar faces and a question",
+        "keywords": ["jspsych", "jspsych-plugin", "avatar", "facial-animation"],
+        "author": PUBLISHER,
+        "license": LICENCE,
+        "repository": { "type": "git", "url": format!("git+{REPOSITORY}.git") },
+        "type": "module",
+        "exports": {
+            ".": { "types": "./index.d.ts", "default": "./index.js" },
+            "./browser.js": { "types": "./index.d.ts", "default": "./browser.js" },
+            "./package.json": "./package.json",
+        },
+        "types": "./index.d.ts",
+        "files": ["*.js", "*.d.ts", "example", "LICENSE-*"],
+        "sideEffects": ["./browser.js", "./index.js"],
+        "peerDependencies": { "jspsych": ">=8.0.0", STAGE: VERSION },
         "publishConfig": { "access": "public" },
     });
     format!("{manifest:#}\n")
@@ -129,69 +181,6 @@ fn resolved(folder: &Path, named: &str) -> String {
     parts.join("/")
 }
 
-/// Installs it by npm, imports it under node, compiles a program against its types, and draws a clip with it in a
-/// browser, whose packs the demonstration's server has: the weights are the server's, bit by bit.
-pub fn check(package: &Path, program: Option<&Path>, work: &Path) -> Result<Tried> {
-    let folder = work.join("embedding");
-    std::fs::create_dir_all(&folder)?;
-    std::fs::write(folder.join("package.json"), r#"{ "private": true, "type": "module" }"#)?;
-    let mut install = Command::new(install::NPM);
-    install.args(["install", "--no-audit", "--no-fund", "--ignore-scripts", "--loglevel=error"]);
-    answer(install.arg(package).arg("typescript@5.9.3").current_dir(&folder))?;
-    let said = answer(
-        Command::new("node")
-            .args(["--input-type=module", "--eval"])
-            .arg("console.log(Object.keys(await import('@mimique/stage')).sort().join(' '))")
-            .current_dir(&folder),
-    )?;
-    let expected =
-        exported(&String::from_utf8_lossy(&files::read(&root().join("static/stage/host.js"))?));
-    ensure!(said.trim() == expected.join(" "), "it exports {said:?} instead of {expected:?}");
-    std::fs::write(folder.join("embedding.ts"), EMBEDDING)?;
-    let mut compile = Command::new("node");
-    compile.args([
-        "node_modules/typescript/bin/tsc",
-        "--noEmit",
-        "--strict",
-        "--module",
-        "nodenext",
-    ]);
-    answer(
-        compile
-            .args(["--target", "es2022", "--lib", "es2022,dom", "embedding.ts"])
-            .current_dir(&folder),
-    )?;
-    let Some(program) = program else {
-        return Ok(Tried::InPart(
-            "imported and compiled against, not drawn with: no program of this machine was built"
-                .into(),
-        ));
-    };
-    let tests = root().join("tests/browser");
-    for found in [install::CHROMIUM.ensure(), install::npm(&tests)?] {
-        if let Found::No(remedy) = found {
-            return Ok(Tried::InPart(format!(
-                "imported and compiled against, not drawn with: {remedy}"
-            )));
-        }
-    }
-    let mut draw = Command::new("node");
-    draw.arg(tests.join("stage_package.mjs")).arg(folder.join("node_modules").join(STAGE));
-    crate::process::say(answer(draw.env("MIMIQUE_BINARY", program))?.trim());
-    Ok(Tried::Done)
-}
-
-/// A program that embeds the package, for its types.
-const EMBEDDING: &str = r#"
-import { openStage, prepareClip, type ClipSource, type PlayLog } from "@mimique/stage";
-export async function shown(canvas: HTMLCanvasElement, source: ClipSource): Promise<PlayLog> {
-  const { frames } = await prepareClip("clip", source, (part: number) => console.log(part));
-  const stage = await openStage(canvas, { width: 320, height: 320 });
-  stage.setView({ yaw: 0.1 * frames });
-  return stage.play("clip", { heard: false });
-}
-"#;
-
 /// The names that a script exports, sorted.
 fn exported(script: &str) -> Vec<String> {
     let mut names = Vec::new();
@@ -223,11 +212,15 @@ mod tests {
         let host = exported(&text("static/stage/host.js"));
         assert!(host.len() >= 8 && host.contains(&"openStage".to_owned()), "{host:?}");
         assert_eq!(host, exported(&text("xtask/package/npm/index.d.ts")));
-        let page = templates().unwrap().into_iter().find(|file| file.name == "README.md").unwrap();
-        assert!(
-            String::from_utf8(page.bytes).unwrap().contains(REPOSITORY),
-            "the package's page names no place"
-        );
+    }
+
+    #[test]
+    fn pages_of_packages_name_the_repository() {
+        for folder in ["xtask/package/npm", "xtask/package/jspsych"] {
+            let page = templates(folder).unwrap().into_iter().find(|file| file.name == "README.md");
+            let page = String::from_utf8(page.unwrap().bytes).unwrap();
+            assert!(page.contains(REPOSITORY) && !page.contains("{repository}"), "{folder}");
+        }
     }
 
     #[test]
@@ -243,9 +236,20 @@ mod tests {
         );
     }
 
+    /// Scripts cannot read the manifest beside them in every browser: they say the version themselves.
     #[test]
-    fn the_manifest_is_of_this_version() {
-        let manifest: serde_json::Value = serde_json::from_str(&manifest()).unwrap();
-        assert_eq!((&manifest["name"], &manifest["version"]), (&json!(STAGE), &json!(VERSION)));
+    fn manifests_and_scripts_are_of_this_version() {
+        for (manifest, name) in [(stage_manifest(), STAGE), (plugin_manifest(), JSPSYCH_PLUGIN)] {
+            let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+            assert_eq!((&manifest["name"], &manifest["version"]), (&json!(name), &json!(VERSION)));
+        }
+        for (folder, script, line) in [
+            ("xtask/package/npm", "version.js", "export const VERSION = "),
+            ("xtask/package/jspsych", "info.js", "export const version = "),
+        ] {
+            let script = files::read(&root().join(folder).join(script)).unwrap();
+            let script = String::from_utf8(script).unwrap();
+            assert!(script.contains(&format!("{line}\"{VERSION}\";")), "{folder}: {script}");
+        }
     }
 }
