@@ -58,10 +58,8 @@ impl Sessions {
             self.known.insert(id.clone(), (at.to_owned(), session));
             return Ok(());
         };
-        let same = known.started == session.started;
-        let joined = if same { known.join(session).is_ok() } else { false };
         anyhow::ensure!(
-            joined,
+            known.started == session.started && known.join(session).is_ok(),
             "{at}: the same session as {first}, with other answers; leave one of them out"
         );
         Ok(())
@@ -113,7 +111,7 @@ fn archived(archive: &[u8]) -> anyhow::Result<Vec<(String, String)>> {
     let mut texts = Vec::new();
     for index in 0..archive.len() {
         let mut entry = archive.by_index(index)?;
-        let name = entry.name().to_owned();
+        let name = entry.name()?.into_owned();
         if !name.ends_with(".txt") && !name.ends_with(".jsonl") {
             continue;
         }
