@@ -15,6 +15,8 @@ import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 const password = "four words are good";
+/** Where the researcher sits: neither the server's zone nor a whole number of hours from it. */
+const ZONE = "Asia/Kolkata";
 
 const study = (id) =>
   small(id, {
@@ -66,7 +68,7 @@ test("researcher: account, live dashboard, exclusion, export, upload", { skip: u
   const broken = { ...study("broken"), languges: ["en"] };
   writeFileSync(join(folder, "broken.json"), JSON.stringify(broken));
   const server = await serve([join(folder, "moods.json")]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 } });
+  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 }, timezone: ZONE });
   const { page } = browser;
   const shots = screenshotFolder("researcher");
   let count = 0;
@@ -126,6 +128,15 @@ test("researcher: account, live dashboard, exclusion, export, upload", { skip: u
     const expected = `under way 1 ${none.map((standing) => `${standing} 0`).join(" ")} completed 2`;
     assert.ok(counts.replace(/\s+/g, " ").includes(expected), `${counts} has: ${expected}`);
     await look("dashboard");
+
+    // Times are those of the reader's zone.
+    const times = await page.locator("time[datetime]").evaluateAll((all) => all.map(({ dateTime, textContent, dataset }) => [dateTime, textContent, dataset.day === undefined]));
+    assert.ok(times.some(([, , withClock]) => withClock), "times of the day are told");
+    const plain = (text) => text.replace(/\s/g, " ");
+    for (const [at, shown, withClock] of times) {
+      const style = withClock ? { dateStyle: "short", timeStyle: "medium" } : { dateStyle: "medium" };
+      assert.equal(plain(shown), plain(new Date(at).toLocaleString("en", { ...style, timeZone: ZONE })));
+    }
 
     // Those of one standing are listed alone, and the page goes on following.
     await page.getByRole("link", { name: "completed" }).click();
