@@ -11,6 +11,10 @@ use serde_json::{Value, json};
 /// The script that starts the page there.
 pub(super) const BOOT: &str = "participant/jatos.js";
 
+/// What the page's policy allows beside its own files: JATOS's script puts what it loads, and the style of what it says,
+/// into the page itself.
+pub(super) const INLINE: &str = "'unsafe-inline'";
+
 /// Where answers go: to the run that the page belongs to.
 pub(super) fn hosting() -> StaticHosting {
     StaticHosting { post: Some("resultData".to_owned()), post_progress: true, download: false }
@@ -47,7 +51,7 @@ pub(super) fn description(study: &Study, config_hash: &str) -> Value {
         "data": {
             "uuid": identifier("study"),
             "title": title,
-            "description": plain(metadata.description.as_ref().map_or("", |text| text.in_language(language))),
+            "description": plain(metadata.description.in_language(language)),
             "groupStudy": false,
             "linearStudy": false,
             "allowPreview": false,

@@ -61,10 +61,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let place = || args.out.display().to_string();
     is_free(&args)?;
     let checked = checked_study(&args.study)?;
-    let hosting = prepare_study(&args.study, checked.study(), &args.packs)
+    let prepared = prepare_study(&args.study, checked.study(), &args.packs)
         .map_err(|faults| anyhow::anyhow!(faults.join("\nerror: ")))?;
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
-    let hosted = HostedStudy::new(checked.value().clone(), hosting.clips, stage)?;
+    let hosted = HostedStudy::new(checked.value().clone(), prepared.clips, stage)?;
 
     // Written beside and moved into place: a site is whole or absent.
     let site = Exported { assets: &assets, study: checked.study(), hosted: &hosted, stage, packs: &args.packs };
@@ -194,11 +194,15 @@ fn write(folder: &mut impl Files, site: &Exported<'_>, jatos: bool) -> anyhow::R
     folder.put("site.json", serde_json::to_string(&site)?.as_bytes())?;
     let language = study.default_language();
     let post = site.hosting.post.as_deref().map_or_else(String::new, origin);
-    let boot = if jatos { jatos::BOOT } else { "participant/boot.js" };
+    let (boot, inline) = match jatos {
+        true => (jatos::BOOT, jatos::INLINE),
+        false => ("participant/boot.js", ""),
+    };
     let triggers = study.triggers.map(|triggers| triggers.origin()).unwrap_or_default();
     let values = [
         ("assets", prefix.as_str()),
         ("boot", boot),
+        ("inline", inline),
         ("lang", language),
         ("title", study.study_metadata.title.in_language(language)),
         ("study", &study.id),
