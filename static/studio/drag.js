@@ -1,5 +1,7 @@
 // A box on a line of time: its edges and itself are dragged, arrow keys move it.
 const EDGE_PX = 8;
+/// A finger covers more than a mouse points at.
+const EDGE_TOUCH_PX = 22;
 
 /// Lays `box` over the frames `range` of `frames` and lets it be moved.
 /// `line`: {element, frames, rate, least}; `moved(range)` hears where it was put.
@@ -13,7 +15,8 @@ export function movable(box, range, line, moved) {
   let drag = null;
   box.addEventListener("pointerdown", (event) => {
     const { left, right } = box.getBoundingClientRect();
-    const part = event.clientX - left < EDGE_PX ? "start" : right - event.clientX < EDGE_PX ? "end" : "whole";
+    const edge = Math.min(event.pointerType === "touch" ? EDGE_TOUCH_PX : EDGE_PX, (right - left) / 3);
+    const part = event.clientX - left < edge ? "start" : right - event.clientX < edge ? "end" : "whole";
     drag = { part, from: event.clientX, now: range };
     box.setPointerCapture(event.pointerId);
   });

@@ -16,7 +16,6 @@ mod erase;
 mod exertion;
 mod export;
 mod export_site;
-mod figure_pdf;
 mod import;
 mod inspect;
 mod layout;

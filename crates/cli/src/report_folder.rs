@@ -7,9 +7,6 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use mimique_analysis::ReportFile;
 use mimique_storage::durable_file;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
-
-use crate::figure_pdf::FigurePdf;
 
 /// Writes the files of a report into `out`, in the place of an earlier one, and gives their paths. A figure that
 /// cannot be a PDF is named on standard error.
@@ -30,18 +27,13 @@ pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<Vec<String>> {
 
 /// The PDF of each figure, by its path.
 fn figures_as_pdf(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
-    let figures: Vec<(&str, &ReportFile)> = (files.iter())
-        .filter_map(|file| Some((file.path.strip_prefix("figures/")?.strip_suffix(".svg")?, file)))
-        .collect();
-    let maker = FigurePdf::new();
-    let made: Vec<_> =
-        figures.into_par_iter().map(|(name, svg)| (name, maker.of_svg(name, &svg.text))).collect();
     let mut pdfs = Vec::new();
-    for (name, made) in made {
-        match made {
-            Ok(bytes) => pdfs.push((format!("figures/{name}.pdf"), bytes)),
+    for made in mimique_figure_pdf::figures(files) {
+        let path = made.path();
+        match made.pdf {
+            Ok(bytes) => pdfs.push((path, bytes)),
             Err(error) => {
-                eprintln!("warning: figures/{name}.svg: {error:#}; take the SVG, it has no PDF");
+                eprintln!("warning: {}: {error}; take the SVG, it has no PDF", made.svg);
             }
         }
     }

@@ -8,14 +8,14 @@ import { join } from "node:path";
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const standards = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
 
-/** What axe finds on the page as it stands. */
-export async function violations(page) {
+/** What axe finds on the page as it stands, or in the part of it that a selector names. */
+export async function violations(page, part = "html") {
   // Not by a script element: the pages allow none but their own.
   await page.evaluate(axe);
-  return page.evaluate(async (tags) => {
-    const { violations } = await window.axe.run(document, { runOnly: { type: "tag", values: tags } });
+  return page.evaluate(async ([part, tags]) => {
+    const { violations } = await window.axe.run(part, { runOnly: { type: "tag", values: tags } });
     return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
-  }, standards);
+  }, [part, standards]);
 }
 
 /** What sticks out of the window or its card, is cut off, or stands letter below letter: a tag and its text each. */

@@ -22,7 +22,7 @@ const backends = {
 };
 
 /** A browser with a fresh profile: `{page, context, requests, errors, close()}`. */
-export async function open(backend, { locale = "en-GB", viewport = { width: 1280, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", forcedColors = "none", profile } = {}) {
+export async function open(backend, { locale = "en-GB", viewport = { width: 1280, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", forcedColors = "none", timezone, touch = false, profile } = {}) {
   profile ??= mkdtempSync(join(tmpdir(), "mimique-profile-"));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: executable,
@@ -33,6 +33,8 @@ export async function open(backend, { locale = "en-GB", viewport = { width: 1280
     colorScheme,
     reducedMotion,
     forcedColors,
+    timezoneId: timezone,
+    hasTouch: touch,
   });
   const requests = [];
   const errors = [];

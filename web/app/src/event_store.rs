@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use wasm_bindgen::JsValue;
 
-use crate::browser::storage;
+use crate::browser::{document, storage};
 
 /// Who we are in a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,7 +22,10 @@ pub struct Identity {
 
 impl Identity {
     fn key(study: &str) -> String {
-        format!("mimique/{study}")
+        match document::run() {
+            Some(run) => format!("mimique/{study}/{run}"),
+            None => format!("mimique/{study}"),
+        }
     }
 
     /// The identity kept for a study.

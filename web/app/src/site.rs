@@ -26,6 +26,8 @@ struct Answers {
     started: SessionStarted,
     /// In ascending order of sequence.
     events: Vec<Event>,
+    /// How many of them, from the first on, the study's address has taken already.
+    posted: usize,
 }
 
 /// What the last page says where no server has the answers.
@@ -130,7 +132,7 @@ impl Site {
         let store = EventStore::open(Store::Answers, &started.session).await;
         let events = store.all().await.unwrap_or_default();
         let kept = events.clone();
-        *self.answers.borrow_mut() = Some(Answers { store, started, events: kept });
+        *self.answers.borrow_mut() = Some(Answers { store, started, events: kept, posted: 0 });
         events
     }
 
@@ -158,6 +160,11 @@ impl Site {
         let whole = (0..).zip(&answers.events).take_while(|(n, each)| each.sequence == *n);
         let stored = whole.count() as u64;
         *self.answers.borrow_mut() = Some(answers);
+        let hosting = self.file.borrow().as_ref().map(|site| site.hosting.clone());
+        if hosting.is_some_and(|hosting| hosting.post_progress) {
+            // What does not arrive goes with what is posted next.
+            let _ = self.post().await;
+        }
         match failed {
             Some(error) => Err(Failure::Unreachable(error.to_string())),
             None => Ok(Acknowledged { stored, gaps: Vec::new() }),
@@ -168,44 +175,79 @@ impl Site {
     pub fn session_file(&self) -> Option<(String, String, String)> {
         let answers = self.answers.borrow();
         let answers = answers.as_ref()?;
-        let study = self.study.clone();
-        let name = format!("{study}_{}.jsonl", answers.started.participant_id);
-        let events = answers.events.clone();
-        let file = SessionFile { study, started: answers.started.clone(), events };
-        let (text, hash) = file.write();
+        let name = format!("{}_{}.jsonl", self.study, answers.started.participant_id);
+        let (text, hash) = self.written(answers, 0);
         Some((name, text, hash))
+    }
+
+    /// The events from `first` on as a file: its text and its hash.
+    fn written(&self, answers: &Answers, first: usize) -> (String, String) {
+        let (started, events) = (answers.started.clone(), answers.events[first..].to_vec());
+        SessionFile { study: self.study.clone(), started, events }.write()
+    }
+
+    /// Posts what the study's address has not taken yet.
+    async fn post(&self) -> Result<(), Failure> {
+        let site = self.file.borrow();
+        let address = site.as_ref().and_then(|site| site.hosting.post.clone());
+        drop(site);
+        let due = self.answers.borrow().as_ref().map(|answers| {
+            let (text, _) = self.written(answers, answers.posted);
+            (answers.started.participant_id.clone(), answers.posted, answers.events.len(), text)
+        });
+        let (Some(address), Some((session, posted, all, text))) = (address, due) else {
+            return Ok(());
+        };
+        if posted == all {
+            return Ok(());
+        }
+        // Plain text asks the other site for nothing but to be taken.
+        let body = Body { media_type: "text/plain;charset=UTF-8", text };
+        let address = address.replace("{session}", &session);
+        let answer = self.requests.send("POST", &address, Some(body)).await?;
+        if !answer.ok() {
+            return Err(Failure::Unreachable(format!("HTTP {}", answer.status)));
+        }
+        if let Some(answers) = &mut *self.answers.borrow_mut() {
+            answers.posted = all;
+        }
+        Ok(())
     }
 
     /// Posts the session where the study says; then the code.
     pub async fn complete(&self, events: u64) -> Result<Receipt, Failure> {
-        let (_, text, hash) = self.session_file().ok_or_else(|| refused("missing-events"))?;
-        let (standing, stored, session) = self.answers.borrow().as_ref().map_or(
-            (Standing::InProgress, 0, String::new()),
-            |answers| {
+        let (_, _, hash) = self.session_file().ok_or_else(|| refused("missing-events"))?;
+        let (standing, stored) =
+            self.answers.borrow().as_ref().map_or((Standing::InProgress, 0), |answers| {
                 let all = &answers.events;
-                let standing = Record::of(None, all).standing;
-                (standing, all.len() as u64, answers.started.participant_id.clone())
-            },
-        );
+                (Record::of(None, all).standing, all.len() as u64)
+            });
         if stored < events {
             return Err(refused("missing-events"));
         }
         let site = self.file.borrow().clone();
         let Some(site) = site else { return Err(Failure::Unreachable("no site".to_owned())) };
-        if let Some(address) = &site.hosting.post {
-            let address = address.replace("{session}", &session);
-            // Plain text asks the other site for nothing but to be taken.
-            let body = Body { media_type: "text/plain;charset=UTF-8", text };
-            let answer = self.requests.send("POST", &address, Some(body)).await?;
-            if !answer.ok() {
-                return Err(Failure::Unreachable(format!("HTTP {}", answer.status)));
-            }
-        }
+        self.post().await?;
+        self.leave_nothing().await;
         let code = site.codes.get(standing.stored_word()).cloned();
         // As the server does: who has no code does not go back as somebody who has finished.
         let back = site.redirect.filter(|_| code.is_some() || standing == Standing::Completed);
         let redirect = back.map(|address| filled(&address, code.as_deref()));
         Ok(Receipt { receipt: hash, stored, completion_code: code, redirect })
+    }
+
+    /// Where a run of another program ends here, the next one in this browser is another person's: what was posted is
+    /// not kept.
+    async fn leave_nothing(&self) {
+        if document::run().is_none() {
+            return;
+        }
+        let answers = self.answers.borrow_mut().take();
+        if let Some(answers) = answers {
+            let _ = answers.store.clear().await;
+            *self.answers.borrow_mut() = Some(answers);
+        }
+        Identity::forget(&self.study);
     }
 
     /// Forgets the answers.

@@ -229,6 +229,15 @@ pub async fn an_exclusion_is_in_export_and_report(server: &TestServer) {
     assert!(flow.contains("\"people_used\": 2") || flow.contains("\"people_used\":2"), "{flow}");
     let archive = owner.open(server, &format!("{report}/report.zip")).await;
     assert_eq!(archive.header(header::CONTENT_TYPE), "application/zip");
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(&*archive.body)).unwrap();
+    let names: Vec<String> =
+        archive.file_names().map(|name| name.unwrap().into_owned()).collect();
+    let svgs = names.iter().filter(|name| name.ends_with(".svg"));
+    let pdfs: Vec<String> = svgs.map(|name| name.replace(".svg", ".pdf")).collect();
+    assert!(!pdfs.is_empty() && pdfs.iter().all(|pdf| names.contains(pdf)), "{names:?}");
+    let mut start = [0; 5];
+    std::io::Read::read_exact(&mut archive.by_name(&pdfs[0]).unwrap(), &mut start).unwrap();
+    assert_eq!(&start, b"%PDF-");
     // Taken back, everybody counts again; who did what is remembered.
     owner.send(server, &format!("{person}/include"), &[]).await;
     assert!(rows(Options::default()).await.iter().all(|row| row["excluded"] == "false"));

@@ -294,6 +294,9 @@ fn hosting(subject: &Subject<'_>, issues: &mut Issues) {
         if !hosting.download {
             issues.error("/staticHosting", Problem::AnswersGoNowhere);
         }
+        if hosting.post_progress {
+            issues.error("/staticHosting/postProgress", Problem::ProgressGoesNowhere);
+        }
         return;
     };
     let place = "/staticHosting/post";

@@ -194,6 +194,8 @@ OneFailureEnds: "unfair-check", "one failed check ends the session",
     "allow one failure: Prolific accepts that only of studies under five minutes";
 AnswersGoNowhere: "empty",
     "answers go nowhere: neither posted nor downloaded", "add \"post\", or let them download";
+ProgressGoesNowhere: "empty",
+    "what is answered is posted as it comes, and no address takes it", "add \"post\", or leave it out";
 PostNotSecure { address: String }: "bad-address",
     "\"{address}\" is not a secure address", "write https://HOST/PATH without blanks";
 

@@ -189,6 +189,9 @@ pub struct StaticHosting {
     /// name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub post: Option<String>,
+    /// Whether every answer is posted as it comes, so that those who leave leave what they answered.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub post_progress: bool,
     /// Whether the participant is offered the answers as a file at the end.
     #[serde(default = "yes")]
     pub download: bool,
@@ -196,6 +199,6 @@ pub struct StaticHosting {
 
 impl Default for StaticHosting {
     fn default() -> Self {
-        Self { post: None, download: true }
+        Self { post: None, post_progress: false, download: true }
     }
 }

@@ -84,6 +84,13 @@ pub fn site() -> Option<(String, String)> {
     Some((meta.get_attribute("content")?, meta.get_attribute("data-study")?))
 }
 
+/// The run that another program, which hosts the site, has begun for this participant: its own page of the study, in
+/// this browser too.
+pub fn run() -> Option<String> {
+    let meta = document().query_selector("meta[name=mimique-site]").ok().flatten()?;
+    meta.get_attribute("data-run")
+}
+
 /// Goes to another address.
 pub fn go(address: &str) {
     // Where the browser does not go, the link is there to be pressed.

@@ -7,9 +7,14 @@
 //! DIR/packs/{sha256}        stimuli
 //! ```
 //!
+//! With `--jatos` the same files become the archive of a study that JATOS imports.
+//!
 //! Answers stay in the participant's browser, are posted to the study's own address at the end, or
 //! downloaded (`staticHosting` of the study file); `mimique import` turns the files into an export.
 //! What no server keeps secret is no secret: the completion codes lie in `site.json`.
+
+mod files;
+mod jatos;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -18,10 +23,11 @@ use anyhow::Context as _;
 use mimique_server::{Assets, HostedStudy, Stage};
 use mimique_session::{SiteFile, Standing};
 use mimique_storage::durable_file;
-use mimique_study::{CheckedStudy, Multilingual as _, Severity, Study};
+use mimique_study::{CheckedStudy, Multilingual as _, Severity, StaticHosting, Study};
 use serde_json::json;
 
 use crate::check::check_file;
+use crate::export_site::files::{Archive, Files, Folder, Written};
 use crate::serve::prepare_study;
 
 /// Options.
@@ -29,9 +35,12 @@ use crate::serve::prepare_study;
 pub struct Args {
     /// Study file
     study: PathBuf,
-    /// Folder to write; it must not be there, or be empty
+    /// Folder to write; it must not be there, or be empty. With --jatos, the archive to write, NAME.jzip
     #[arg(long)]
     out: PathBuf,
+    /// Write the archive of a study that JATOS imports
+    #[arg(long)]
+    jatos: bool,
     /// Folder where prepared stimuli are kept between runs
     #[arg(long, default_value = "mimique-data/packs")]
     packs: PathBuf,
@@ -50,29 +59,26 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         None => Assets::embedded()?,
     };
     let place = || args.out.display().to_string();
-    let taken = std::fs::read_dir(&args.out).is_ok_and(|mut entries| entries.next().is_some());
-    anyhow::ensure!(
-        !taken,
-        "{}: there is something in this folder; choose another by --out",
-        place()
-    );
+    is_free(&args)?;
     let checked = checked_study(&args.study)?;
-    let hosting = prepare_study(&args.study, checked.study(), &args.packs)
+    let prepared = prepare_study(&args.study, checked.study(), &args.packs)
         .map_err(|faults| anyhow::anyhow!(faults.join("\nerror: ")))?;
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };
-    let hosted = HostedStudy::new(checked.value().clone(), hosting.clips, stage)?;
+    let hosted = HostedStudy::new(checked.value().clone(), prepared.clips, stage)?;
 
     // Written beside and moved into place: a site is whole or absent.
+    let site = Exported { assets: &assets, study: checked.study(), hosted: &hosted, stage, packs: &args.packs };
     let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty());
     let parent = parent.unwrap_or(Path::new("."));
     std::fs::create_dir_all(parent).with_context(|| parent.display().to_string())?;
-    let (files, bytes) = durable_file::write_folder(&args.out, |folder| {
-        write(folder, &assets, checked.study(), &hosted, stage, &args.packs)
-    })
+    let Written { files, bytes } = match args.jatos {
+        true => site.write_archive(&args.out, checked.config_hash()),
+        false => site.write_folder(&args.out),
+    }
     .with_context(place)?;
 
     let study = checked.study();
-    let hosting = study.static_hosting.clone().unwrap_or_default();
+    let hosting = hosting(study, args.jatos);
     let way = match (&hosting.post, hosting.download) {
         (Some(address), true) => format!("posted to {address}, and downloaded by the participant"),
         (Some(address), false) => format!("posted to {address}"),
@@ -88,6 +94,13 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         return Ok(());
     }
     writeln!(out, "{}: {files} files, {:.1} MB", place(), bytes as f64 / 1e6)?;
+    if args.jatos {
+        let study = args.study.display();
+        writeln!(out, "  import it in JATOS: Studies, Import study")?;
+        writeln!(out, "  every answer is appended to the result of its run as it comes")?;
+        writeln!(out, "  read what JATOS exports (data only, or the archive) with: mimique import {study} FILES")?;
+        return Ok(());
+    }
     writeln!(out, "  put the folder on any web host (https) and open its index.html there")?;
     writeln!(out, "  answers are kept in the browser, at the end {way}")?;
     writeln!(out, "  read them with: mimique import {} FILES", args.study.display())?;
@@ -115,26 +128,81 @@ fn checked_study(file: &Path) -> anyhow::Result<CheckedStudy> {
     report.study.ok_or_else(|| anyhow::anyhow!("{}: no study", file.display()))
 }
 
-/// Writes the site; returns the number of files and bytes.
-fn write(
-    folder: &Path,
-    assets: &Assets,
-    study: &Study,
-    hosted: &HostedStudy,
+/// Whether nothing stands where the site is to be written.
+fn is_free(args: &Args) -> anyhow::Result<()> {
+    let place = args.out.display();
+    if args.jatos {
+        let is_archive = args.out.extension().is_some_and(|end| end == "jzip");
+        anyhow::ensure!(is_archive, "{place}: JATOS imports archives; write --out NAME.jzip");
+        anyhow::ensure!(!args.out.exists(), "{place}: there is such a file; choose another by --out");
+        return Ok(());
+    }
+    let taken = std::fs::read_dir(&args.out).is_ok_and(|mut entries| entries.next().is_some());
+    anyhow::ensure!(!taken, "{place}: there is something in this folder; choose another by --out");
+    Ok(())
+}
+
+/// Where the answers go.
+fn hosting(study: &Study, jatos: bool) -> StaticHosting {
+    match jatos {
+        true => jatos::hosting(),
+        false => study.static_hosting.clone().unwrap_or_default(),
+    }
+}
+
+/// What a site is made of.
+struct Exported<'a> {
+    assets: &'a Assets,
+    study: &'a Study,
+    hosted: &'a HostedStudy,
     stage: Stage,
-    packs: &Path,
-) -> anyhow::Result<(usize, u64)> {
-    let mut folder = Folder { path: folder, files: 0, bytes: 0 };
+    packs: &'a Path,
+}
+
+impl Exported<'_> {
+    /// Writes the folder that any web host can serve.
+    fn write_folder(&self, out: &Path) -> anyhow::Result<Written> {
+        durable_file::write_folder(out, |folder| {
+            let mut folder = Folder::new(folder);
+            write(&mut folder, self, false)?;
+            Ok(folder.written)
+        })
+    }
+
+    /// Writes the archive that JATOS imports.
+    fn write_archive(&self, out: &Path, config_hash: &str) -> anyhow::Result<Written> {
+        let mut draft = durable_file::Draft::begin(out)?;
+        let name = jatos::folder(self.study);
+        let mut archive = Archive::begin(&mut draft, &name);
+        write(&mut archive, self, true)?;
+        archive.beside();
+        let description = jatos::description(self.study, config_hash);
+        archive.put(&format!("{name}.jas"), description.to_string().as_bytes())?;
+        let written = archive.finish()?;
+        draft.finish()?;
+        Ok(written)
+    }
+}
+
+/// Writes the files of the site.
+fn write(folder: &mut impl Files, site: &Exported<'_>, jatos: bool) -> anyhow::Result<()> {
+    let Exported { assets, study, hosted, stage, packs } = *site;
     let prefix = format!("assets/{}", assets.hash());
-    write_assets(&mut folder, assets, &prefix)?;
-    write_packs(&mut folder, hosted, packs)?;
-    let site = site_file(study, hosted, stage);
+    write_assets(folder, assets, &prefix)?;
+    write_packs(folder, hosted, packs)?;
+    let site = site_file(study, hosted, stage, hosting(study, jatos));
     folder.put("site.json", serde_json::to_string(&site)?.as_bytes())?;
     let language = study.default_language();
     let post = site.hosting.post.as_deref().map_or_else(String::new, origin);
+    let (boot, inline) = match jatos {
+        true => (jatos::BOOT, jatos::INLINE),
+        false => ("participant/boot.js", ""),
+    };
     let triggers = study.triggers.map(|triggers| triggers.origin()).unwrap_or_default();
     let values = [
         ("assets", prefix.as_str()),
+        ("boot", boot),
+        ("inline", inline),
         ("lang", language),
         ("title", study.study_metadata.title.in_language(language)),
         ("study", &study.id),
@@ -145,34 +213,11 @@ fn write(
     let page = page.context(
         "participant/site.html is not among the pages; run `cargo xtask web` and build again",
     )?;
-    folder.put("index.html", page.as_bytes())?;
-    Ok((folder.files, folder.bytes))
-}
-
-/// A folder that is being written, with what it holds so far.
-struct Folder<'a> {
-    path: &'a Path,
-    files: usize,
-    bytes: u64,
-}
-
-impl Folder<'_> {
-    /// Writes a file, and makes its folder where it is not there.
-    fn put(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        let path = self.path.join(name);
-        let place = || path.display().to_string();
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).with_context(place)?;
-        }
-        std::fs::write(&path, bytes).with_context(place)?;
-        self.files += 1;
-        self.bytes += bytes.len() as u64;
-        Ok(())
-    }
+    folder.put("index.html", page.as_bytes())
 }
 
 /// Modules, scripts and styles of the participant's page.
-fn write_assets(folder: &mut Folder<'_>, assets: &Assets, prefix: &str) -> anyhow::Result<()> {
+fn write_assets(folder: &mut impl Files, assets: &Assets, prefix: &str) -> anyhow::Result<()> {
     for (name, bytes) in assets.files() {
         // Pages of the server, and what only they need.
         let servers = name.ends_with(".html")
@@ -187,7 +232,7 @@ fn write_assets(folder: &mut Folder<'_>, assets: &Assets, prefix: &str) -> anyho
 }
 
 /// The packs of all clips, each once.
-fn write_packs(folder: &mut Folder<'_>, hosted: &HostedStudy, packs: &Path) -> anyhow::Result<()> {
+fn write_packs(folder: &mut impl Files, hosted: &HostedStudy, packs: &Path) -> anyhow::Result<()> {
     let clips = hosted.bundle().clips.values();
     let mut hashes: Vec<&str> = clips.flat_map(|clip| clip.packs()).collect();
     hashes.sort_unstable();
@@ -201,7 +246,7 @@ fn write_packs(folder: &mut Folder<'_>, hosted: &HostedStudy, packs: &Path) -> a
 }
 
 /// What `site.json` says: the study, its clips, its codes, and where the answers go.
-fn site_file(study: &Study, hosted: &HostedStudy, stage: Stage) -> SiteFile {
+fn site_file(study: &Study, hosted: &HostedStudy, stage: Stage, hosting: StaticHosting) -> SiteFile {
     let recruitment = &study.recruitment;
     // By the stored word, which names one standing: those that one exported word joins may have codes of their own.
     let code = |standing: Standing| {
@@ -215,14 +260,14 @@ fn site_file(study: &Study, hosted: &HostedStudy, stage: Stage) -> SiteFile {
         seed: study.seed,
         codes: Standing::ALL.into_iter().filter_map(code).collect(),
         redirect: recruitment.redirect.clone(),
-        hosting: study.static_hosting.clone().unwrap_or_default(),
+        hosting,
         email: contact.map_or_else(String::new, |contact| contact.investigator.email.clone()),
     }
 }
 
-/// Scheme and host of an address, as a content security policy wants them.
+/// Scheme and host of an address, as a content security policy wants them; nothing for a place beside the page.
 fn origin(address: &str) -> String {
-    let (scheme, rest) = address.split_once("://").unwrap_or(("https", address));
+    let Some((scheme, rest)) = address.split_once("://") else { return String::new() };
     let host = rest.split(['/', '?', '#', '{']).next().unwrap_or_default();
     format!("{scheme}://{host}")
 }

@@ -6,13 +6,59 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use anyhow::{Context, bail};
 use krilla::Document;
 use krilla::geom::Size;
 use krilla::metadata::Metadata;
 use krilla::page::PageSettings;
 use krilla_svg::{SurfaceExt, SvgSettings};
+use mimique_analysis::ReportFile;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use usvg::{Group, Node, Tree, fontdb, roxmltree};
+
+/// Why a figure is no PDF.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FigurePdfError {
+    /// What came in is no SVG that can be drawn.
+    #[error("this is no SVG ({0})")]
+    NoSvg(String),
+    /// The text has signs for which the font has no glyph.
+    #[error("the font of PDFs does not have {}", signs.join(" "))]
+    MissingSigns {
+        /// Each once, in order.
+        signs: Vec<String>,
+    },
+    /// The drawing could not be written.
+    #[error("the PDF cannot be written: {0}")]
+    Unwritten(String),
+}
+
+/// A figure of a report as PDF.
+#[derive(Debug)]
+pub struct Made {
+    /// Path of the SVG among the report's files.
+    pub svg: String,
+    /// The PDF, or why there is none.
+    pub pdf: Result<Vec<u8>, FigurePdfError>,
+}
+
+impl Made {
+    /// Path of the PDF: beside the SVG.
+    pub fn path(&self) -> String {
+        format!("{}.pdf", self.svg.trim_end_matches(".svg"))
+    }
+}
+
+/// The PDF of each figure among the files of a report, in their order.
+pub fn figures(files: &[ReportFile]) -> Vec<Made> {
+    let figures: Vec<(&str, &ReportFile)> = (files.iter())
+        .filter_map(|file| Some((file.path.strip_prefix("figures/")?.strip_suffix(".svg")?, file)))
+        .collect();
+    let maker = FigurePdf::new();
+    figures
+        .into_par_iter()
+        .map(|(name, file)| Made { svg: file.path.clone(), pdf: maker.of_svg(name, &file.text) })
+        .collect()
+}
 
 /// Points of PDF per pixel of SVG: 96 pixels are an inch, and so are 72 points.
 const POINTS_PER_PIXEL: f32 = 0.75;
@@ -40,18 +86,19 @@ impl FigurePdf {
     ///
     /// # Errors
     /// What is no SVG, and text with signs that the font does not have.
-    pub fn of_svg(&self, name: &str, svg: &str) -> anyhow::Result<Vec<u8>> {
-        let parsed = roxmltree::Document::parse(svg).context("this is no SVG")?;
-        let tree = Tree::from_xmltree(&parsed, &self.options).context("this is no SVG")?;
+    pub fn of_svg(&self, name: &str, svg: &str) -> Result<Vec<u8>, FigurePdfError> {
+        let no_svg = |why: &dyn ToString| FigurePdfError::NoSvg(why.to_string());
+        let parsed = roxmltree::Document::parse(svg).map_err(|error| no_svg(&error))?;
+        let tree =
+            Tree::from_xmltree(&parsed, &self.options).map_err(|error| no_svg(&error))?;
         let mut missing = BTreeSet::new();
         collect_missing(tree.root(), &mut missing);
         if !missing.is_empty() {
-            let signs: Vec<&str> = missing.iter().map(String::as_str).collect();
-            bail!("the font of PDFs does not have {}", signs.join(" "));
+            return Err(FigurePdfError::MissingSigns { signs: missing.into_iter().collect() });
         }
         let [width, height] =
             [tree.size().width(), tree.size().height()].map(|pixels| pixels * POINTS_PER_PIXEL);
-        let size = Size::from_wh(width, height).context("the SVG has no size")?;
+        let size = Size::from_wh(width, height).ok_or_else(|| no_svg(&"it has no size"))?;
         let mut document = Document::new();
         let mut metadata = Metadata::new().title(name.to_owned());
         if let Some(label) = parsed.root_element().attribute("aria-label") {
@@ -60,10 +107,12 @@ impl FigurePdf {
         document.set_metadata(metadata);
         let mut page = document.start_page_with(PageSettings::new(size));
         let mut surface = page.surface();
-        surface.draw_svg(&tree, size, SvgSettings::default()).context("the SVG cannot be drawn")?;
+        surface
+            .draw_svg(&tree, size, SvgSettings::default())
+            .ok_or_else(|| no_svg(&"it cannot be drawn"))?;
         surface.finish();
         page.finish();
-        document.finish().map_err(|error| anyhow::anyhow!("the PDF cannot be written: {error:?}"))
+        document.finish().map_err(|error| FigurePdfError::Unwritten(format!("{error:?}")))
     }
 }
 
@@ -150,6 +199,6 @@ mod tests {
         let refused = FigurePdf::new().of_svg("shares", &figure("信 and 実")).unwrap_err();
         assert_eq!(refused.to_string(), "the font of PDFs does not have 信 実");
         let refused = FigurePdf::new().of_svg("shares", "no drawing").unwrap_err();
-        assert_eq!(refused.to_string(), "this is no SVG");
+        assert!(refused.to_string().starts_with("this is no SVG ("), "{refused}");
     }
 }
