@@ -25,11 +25,6 @@ function showReport(text) {
   const frame = $("report");
   frame.onload = () => {
     const inside = frame.contentDocument;
-    // As high as what it holds, whatever is unfolded in it.
-    const fit = () => (frame.style.height = `${Math.ceil(inside.documentElement.getBoundingClientRect().height) + 4}px`);
-    fit();
-    inside.addEventListener("toggle", fit, true);
-    frame.contentWindow.addEventListener("resize", fit);
     inside.addEventListener("click", (event) => follow(event, inside));
   };
   frame.removeAttribute("src");

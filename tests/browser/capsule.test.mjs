@@ -77,6 +77,9 @@ function made() {
   return capsule;
 }
 
+// axe would read the styles once more, which the pages' policy refuses.
+const axes = /\.css' violates the following Content Security Policy directive: "connect-src /;
+
 /** A browser without a network; what it asks for beyond its own place is told. */
 async function offline(own) {
   const browser = await open("webgl2", { viewport: { width: 1280, height: 900 } });
@@ -136,6 +139,15 @@ async function clickPoint(page) {
   return new URL(href, "http://x/").searchParams.get("clip");
 }
 
+/** The same text, its unrounded numbers the same to 12 digits: the mathematical functions of a browser's module and of the
+    machine's own library differ in the last bit. */
+function alike(found, expected) {
+  const number = /-?\d+(?:\.\d+)?(?:e[-+]?\d+)?/g;
+  assert.equal(found.replace(number, "#"), expected.replace(number, "#"));
+  const [numbers, others] = [found, expected].map((text) => text.match(number).map(Number));
+  numbers.forEach((one, k) => assert.ok(Math.abs(one - others[k]) <= 1e-12 * Math.max(Math.abs(one), Math.abs(others[k])), `${one} here, ${others[k]} natively`));
+}
+
 /** A text that a link of the page saves. */
 async function saved(page, name) {
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name }).click()]);
@@ -185,7 +197,9 @@ test("capsule: from the disk, without a network", { skip: unable, timeout: 600_0
     await page.getByRole("button", { name: "Compute" }).click();
     await page.locator("#computing", { hasText: "Computed in this browser." }).waitFor({ timeout: 120_000 });
     const published = readFileSync(join(place, "report/results.json"), "utf8");
-    assert.equal(await saved(page, "results-changed.json"), published, "the same bytes as natively");
+    alike(await saved(page, "results-changed.json"), published);
+    const shown = () => page.evaluate(() => document.getElementById("report").srcdoc);
+    assert.equal(await shown(), readFileSync(join(place, "report/report.html"), "utf8"), "the report, byte for byte");
 
     // Another rule and another test: the numbers are those that the program gives natively for the same file.
     await page.fill("[data-rule=lateFrameShare]", "0.01");
@@ -200,8 +214,11 @@ test("capsule: from the disk, without a network", { skip: unable, timeout: 600_0
     const changed = JSON.parse(readFileSync(file, "utf8"));
     assert.deepEqual([changed.exclusions.lateFrameShare, changed.exclusions.straightLining.longestRun, changed.hypotheses[2].test], [0.01, 3, "mann-whitney"]);
     const out = join(folder, "native");
-    mimique(["analyze", join(place, "data/responses.csv"), "--study", file, "--stimuli", join(place, "data/stimuli.csv"), "--preview-url", "http://127.0.0.1/preview/demo", "--out", out]);
-    assert.equal(results, readFileSync(join(out, "results.json"), "utf8"), "the same bytes as natively");
+    const preview = "http://127.0.0.1/preview/demo";
+    mimique(["analyze", join(place, "data/responses.csv"), "--study", file, "--stimuli", join(place, "data/stimuli.csv"), "--preview-url", preview, "--out", out]);
+    alike(results, readFileSync(join(out, "results.json"), "utf8"));
+    const native = readFileSync(join(out, "report.html"), "utf8").replaceAll(preview, "../index.html");
+    assert.equal(await shown(), native, "the report, byte for byte");
     assert.match(await page.locator("#compared p").first().textContent(), /trials are used; as published/);
     await look(page, "changed", 1280, "dark");
     await page.getByRole("button", { name: "As published" }).click();
@@ -209,7 +226,7 @@ test("capsule: from the disk, without a network", { skip: unable, timeout: 600_0
 
     assert.match(await page.locator("#formats pre").textContent(), /\| `frames_late` \| integer \|/);
     assert.deepEqual(browser.asked, [], "nothing outside the folder was asked for");
-    assert.deepEqual(browser.errors, [], "the console is clean");
+    assert.deepEqual(browser.errors.filter((text) => !axes.test(text)), [], "the console is clean");
   } finally {
     await browser.close();
   }
@@ -250,7 +267,7 @@ test("capsule: the study is taken from the disk, and nothing is kept", { skip: u
   try {
     await takesPart(browser, own);
     assert.deepEqual(browser.asked, []);
-    assert.deepEqual(browser.errors, [], "the console is clean");
+    assert.deepEqual(browser.errors.filter((text) => !axes.test(text)), [], "the console is clean");
   } finally {
     await browser.close();
   }
@@ -276,7 +293,7 @@ test("capsule: the same from a web host", { skip: unable, timeout: 600_000 }, as
     assert.match(await point.getAttribute("href"), /^\.\.\/index\.html\?clip=/);
     await takesPart(browser, own);
     assert.deepEqual(browser.asked, []);
-    assert.deepEqual(browser.errors, [], "the console is clean");
+    assert.deepEqual(browser.errors.filter((text) => !axes.test(text)), [], "the console is clean");
   } finally {
     await browser.close();
     host.closeAllConnections();

@@ -1,5 +1,7 @@
 //! The report of a study in the browser, for the pages of a capsule (`mimique capsule`): the tidy export, the study file
-//! and the table of stimuli in, every table, figure and sentence out. It is the function that `mimique analyze` calls.
+//! and the table of stimuli in, every table, figure and sentence out. It is the function that `mimique analyze` calls. Every file is the same
+//! byte for byte, but for the unrounded numbers of `results.json` and `data/numbers.csv`: exponentials and logarithms are those of
+//! the module here and those of the machine's library there, and differ in the last bit.
 //!
 //! ```js
 //! const report = analyze(csv, study, stimuli, "index.html", "en");

@@ -1,4 +1,5 @@
-//! The module that a capsule loads gives the report that the native program gives: every file, byte for byte.
+//! The module that a capsule loads gives the report that the native program gives: every file byte for byte, but for numbers
+//! that are written unrounded, which agree to 1e-12.
 //!
 //! Needs node and the module built by `cargo xtask web` (in `target/web-dist`, or where `MIMIQUE_WEB_DIST` says).
 

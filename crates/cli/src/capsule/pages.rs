@@ -71,18 +71,6 @@ pub fn reader(assets: &str, about: &About<'_>, language: Language) -> String {
                 main.page.wide #capsule data-words=(script_words(language)) data-replay=(replay_words(language)) {
                     h1 { (title) }
                     (overview(about, language))
-                    section.card #change {
-                        h2 { (say("Under other rules", "Avec d’autres règles")) }
-                        p {
-                            (say(
-                                "Change a rule of exclusion or a test: the statistics are computed anew in this browser, by the functions that made the report.",
-                                "Changez une règle d’exclusion ou un test : les statistiques sont recalculées dans ce navigateur, par les fonctions qui ont fait le rapport.",
-                            ))
-                        }
-                        (changes(about.study, language))
-                        p #computing role="status" {}
-                        div #compared {}
-                    }
                     section.card {
                         h2 { (say("Report", "Rapport")) }
                         p.soft {
@@ -94,6 +82,18 @@ pub fn reader(assets: &str, about: &About<'_>, language: Language) -> String {
                             ))
                         }
                         iframe #report src="report/report.html" title=(say("Report", "Rapport")) {}
+                    }
+                    section.card #change {
+                        h2 { (say("Under other rules", "Avec d’autres règles")) }
+                        p {
+                            (say(
+                                "Change a rule of exclusion or a test: the statistics are computed anew in this browser, by the functions that made the report.",
+                                "Changez une règle d’exclusion ou un test : les statistiques sont recalculées dans ce navigateur, par les fonctions qui ont fait le rapport.",
+                            ))
+                        }
+                        (changes(about.study, language))
+                        p #computing role="status" {}
+                        div #compared {}
                     }
                     (trials(language))
                     section.card #formats {
@@ -128,8 +128,8 @@ fn overview(about: &About<'_>, language: Language) -> Markup {
             }
             @for sentence in about.left_out { p.soft { (sentence) } }
             nav.capsule-nav aria-label=(say("On this page", "Sur cette page")) {
-                a href="#change" { (say("Other rules", "Autres règles")) }
                 a href="#report" { (say("Report", "Rapport")) }
+                a href="#change" { (say("Other rules", "Autres règles")) }
                 a href="#trials" { (say("Trials", "Essais")) }
                 a href="#formats" { (say("Formats", "Formats")) }
                 a href="take-part.html" { (say("Take part, nothing is kept", "Participer, rien n’est conservé")) }
@@ -247,11 +247,13 @@ fn trials(language: Language) -> Markup {
 pub fn take_part(assets: &str, study: &Study) -> String {
     let code = study.default_language();
     let title = study.study_metadata.title.in_language(code);
-    let (said, back) = match code.get(..2) {
-        Some("fr") => {
-            ("Rien de ce que vous répondez ici n’est conservé ni envoyé.", "Retour au rapport")
-        }
-        _ => ("Nothing that you answer here is kept or sent.", "Back to the report"),
+    let (note, said, back) = match code.get(..2) {
+        Some("fr") => (
+            "Remarque",
+            "Rien de ce que vous répondez ici n’est conservé ni envoyé.",
+            "Retour au rapport",
+        ),
+        _ => ("Note", "Nothing that you answer here is kept or sent.", "Back to the report"),
     };
     let page = html! {
         (DOCTYPE)
@@ -262,7 +264,7 @@ pub fn take_part(assets: &str, study: &Study) -> String {
                 (head(assets, title, &["style/style.css", "capsule/capsule.css"], &["capsule/nothing-kept.js"], "participant/boot.js"))
             }
             body.capsule-part {
-                p.capsule-stays #stays role="note" { (said) " " a href="index.html" { (back) } }
+                aside.capsule-stays #stays aria-label=(note) { (said) " " a href="index.html" { (back) } }
                 div #app { (first_page(study, code)) }
             }
         }

@@ -30,7 +30,7 @@ pub fn script_words(language: Language) -> String {
         ),
         "save": say("Save:", "Enregistrer :"),
         "publishedReport": say("The report as it was published.", "Le rapport tel qu’il a été publié."),
-        "changedReport": say("The report under the rules above, not as it was published.", "Le rapport avec les règles ci-dessus, non celui qui a été publié."),
+        "changedReport": say("The report under the rules below, not as it was published.", "Le rapport avec les règles ci-dessous, non celui qui a été publié."),
     })
     .to_string()
 }
