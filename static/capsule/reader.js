@@ -51,6 +51,9 @@ function openClip(clip) {
 }
 
 let trials = [];
+// What is listed, and which of it is drawn.
+let listed = [];
+let current = null;
 
 /// The rows that fit what is chosen; the first of them are listed.
 function list() {
@@ -68,12 +71,20 @@ function list() {
   });
   $("rows").replaceChildren(...rows);
   $("count").textContent = say(found.length > rows.length ? "someTrials" : "allTrials", { count: found.length, shown: rows.length });
+  listed = found;
   return found;
+}
+
+/// The next trial of the list, or the one before.
+function turn(by) {
+  const next = listed[listed.indexOf(current) + by];
+  if (current && next?.plays > 0) draw(next);
 }
 
 /// Draws a trial as its participant saw it.
 async function draw(trial) {
   const isMine = replay.begin();
+  current = trial;
   $("player").hidden = false;
   $("drawn").hidden = false;
   $("drawn").textContent = say("drawn", trial);
@@ -94,7 +105,7 @@ async function start() {
   options($("person"), told.participants);
   options($("clip"), told.clips);
   for (const id of ["person", "clip"]) $(id).addEventListener("change", list);
-  replay.wire({});
+  replay.wire({ p: () => turn(-1), n: () => turn(1) });
   list();
   openChanges({ words, say, showReport });
   // A figure of report/report.html leads here.

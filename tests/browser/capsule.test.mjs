@@ -11,6 +11,7 @@ import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { lost, violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { taken } from "./lib/guide_picture.mjs";
 import { answer, go, leave, phase, place, until } from "./lib/participant.mjs";
 import { mimique, root } from "./lib/server.mjs";
 import { unpack } from "./lib/unpack.mjs";
@@ -183,6 +184,10 @@ test("capsule: from the disk, without a network", { skip: unable, timeout: 600_0
     const at = frames.findIndex((frame) => frame[2]);
     await page.locator("#late button").first().click();
     await until("the late frame is drawn", async () => Number(await page.locator("#stages canvas").getAttribute("data-clip-ms")) === frames[at][1], 5000);
+    await page.setViewportSize({ width: 1000, height: 900 });
+    await page.locator("#drawn").evaluate((heading) => heading.scrollIntoView({ block: "start" }));
+    await page.waitForTimeout(500);
+    await taken(page, "capsule-reader.jpg");
     await look(page, "reader", 1280, "light");
     await look(page, "reader", 360, "dark");
     await page.setViewportSize({ width: 1280, height: 900 });

@@ -142,7 +142,7 @@ fn a_capsule_holds_study_stimuli_answers_frames_and_report_and_nothing_personal(
     let told = ok(&args(&exports, &out));
     for said in [
         "Not in it: 1 person who withdrew.",
-        "Not in it: 1 person of whom only one of the two exports knows",
+        "of whom only one of the two exports knows",
         "Not in it: what people wrote in their own words (job, why).",
         "Not in it: identifiers of recruitment (PROLIFIC_PID).",
     ] {

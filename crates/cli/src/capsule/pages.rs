@@ -302,10 +302,10 @@ pub fn sentences(
         let who = people(left_out.in_one_alone.len());
         said.push(language.pick(
             format!(
-                "Not in it: {who} of whom only one of the two exports knows, as after an erasure."
+                "Not in it: {who} of whom only one of the two exports knows: erased between them, or gone before the first answer."
             ),
             format!(
-                "Absentes : {who} que seul un des deux exports connaît, comme après un effacement."
+                "Absentes : {who} que seul un des deux exports connaît : effacées entre-temps, ou parties avant la première réponse."
             ),
         ));
     }
