@@ -103,7 +103,8 @@ fn files(archive: &Path) -> BTreeMap<String, Vec<u8>> {
         let mut file = archive.by_index(place).unwrap();
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).unwrap();
-        let name = file.name().unwrap().strip_prefix("capsule-shared/").expect("below one folder");
+        let path = file.name().unwrap().into_owned();
+        let name = path.strip_prefix("capsule-shared/").expect("below one folder");
         (name.to_owned(), bytes)
     })
     .collect()

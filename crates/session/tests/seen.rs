@@ -70,7 +70,8 @@ fn every_page_is_seen_in_order_with_what_was_answered() {
 fn frames_are_kept_of_one_page() {
     let mut page = Page::open(&study_text("demo.json"), 1);
     page.finish();
-    let place = seen(&page, KeptFrames::None).iter().rposition(|own| !own.plays.is_empty()).unwrap();
+    let place =
+        seen(&page, KeptFrames::None).iter().rposition(|own| !own.plays.is_empty()).unwrap();
     for (at, own) in seen(&page, KeptFrames::OfPage(place)).iter().enumerate() {
         for play in &own.plays {
             let kept = if at == place { 3 } else { 0 };
