@@ -2,7 +2,7 @@
 
 mod support;
 
-use mimique_session::flow::{BESIDE_CANVAS, KeptFrames, OWN_CANVAS, Seen, SeenPage, View};
+use mimique_session::flow::{BESIDE_CANVAS, KeptFrames, OWN_CANVAS, Plays, Seen, SeenPage, View};
 use mimique_session::{EventKind, PlayLog};
 use serde_json::Value;
 use support::{Page, first_answer, study_text};
@@ -67,7 +67,7 @@ fn every_page_is_seen_in_order_with_what_was_answered() {
 }
 
 #[test]
-fn frames_are_kept_of_one_page() {
+fn frames_are_kept_of_the_pages_that_are_asked_for() {
     let mut page = Page::open(&study_text("demo.json"), 1);
     page.finish();
     let place =
@@ -77,6 +77,17 @@ fn frames_are_kept_of_one_page() {
             let kept = if at == place { 3 } else { 0 };
             assert_eq!((play.log.frames.len(), play.frames), (kept, 3), "{at}");
         }
+    }
+    let all = seen(&page, KeptFrames::All);
+    let plays: Vec<_> = all.iter().flat_map(|own| &own.plays).collect();
+    assert_eq!(plays.len(), page.played.len());
+    assert!(plays.iter().all(|play| play.log.frames.len() == 3));
+    // As they are drawn again: each with its clip and its frames.
+    for own in all.iter().filter(|own| !own.plays.is_empty()) {
+        let drawn = serde_json::to_value(Plays::of(&page.plan, own)).unwrap();
+        assert_eq!(drawn["plays"][0]["clips"][0]["clip"], own.plays[0].clips[0].clip.as_str());
+        assert_eq!(drawn["plays"][0]["frames"].as_array().unwrap().len(), 3);
+        assert!(own.step.starts_with("faces/"), "{}", own.step);
     }
 }
 
