@@ -31,8 +31,7 @@ pub async fn stimuli(
 /// # Errors
 /// The file is no study.
 pub fn stimuli_of(file: Value, hosting: &Hosting) -> Result<Vec<u8>, ExportError> {
-    let study =
-        Study::from_value(&file).map_err(|error| ExportError::Form(error.to_string()))?;
+    let study = Study::from_value(&file).map_err(|error| ExportError::Form(error.to_string()))?;
     let study_id = study.id.clone();
     let (clips, measures) = (hosting.clips.clone(), hosting.measures.clone());
     let version = Version { config_hash: config_hash(&file), file, study, clips, measures };

@@ -40,7 +40,8 @@ pub(crate) async fn plays(
     let study = visible(&app, &who, &id, Role::Analyst)?;
     let session = session(&app, study.id(), number).await?;
     let place = page.checked_sub(1).ok_or(Error::NotFound)?;
-    let replay = Replay::load(&app.storage, study.id(), &session, KeptFrames::OfPage(place)).await?;
+    let replay =
+        Replay::load(&app.storage, study.id(), &session, KeptFrames::OfPage(place)).await?;
     let plays = replay.plays(place).ok_or(Error::NotFound)?;
     Ok(Json(plays).into_response())
 }
