@@ -82,6 +82,7 @@ fn lints(tally: &mut Tally) {
         ("mimique-app", None),
         ("mimique-web-solver", None),
         ("mimique-web-adaptive", None),
+        ("mimique-web-report", None),
         ("mimique-web-studio", None),
         ("mimique-web-stage", Some("webgpu")),
         ("mimique-web-stage", Some("webgl")),

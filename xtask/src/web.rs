@@ -7,6 +7,7 @@
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
 //! | `adaptive` | `web/adaptive` | `web-solver` | the levels of adaptive blocks; studies with one alone load it |
 //! | `studio` | `web/studio` | `web-solver` | the studio's worker |
+//! | `report` | `web/report` | `web-solver` | the report of a study, for the pages of a capsule |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
 //! | `exertion_bits` | an example of `web/solver` | `web-solver` | exertion's numbers, for a test; not a part of the pages |
@@ -29,7 +30,7 @@ use crate::process::{cargo, locked, root, run as run_program, say, target};
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (adaptive, app, exertion_bits, orders, panicking, stage_webgpu, stage_webgl, solver, studio);
+    /// Build only these modules (adaptive, app, exertion_bits, orders, panicking, report, stage_webgpu, stage_webgl, solver, studio);
     /// static files always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
@@ -49,7 +50,7 @@ struct Module {
     opt_level: &'static str,
 }
 
-const MODULES: [Module; 9] = [
+const MODULES: [Module; 10] = [
     Module {
         name: "app",
         package: "mimique-app",
@@ -94,6 +95,15 @@ const MODULES: [Module; 9] = [
         features: None,
         profile: "web",
         opt_level: "-Oz",
+    },
+    Module {
+        name: "report",
+        package: "mimique-web-report",
+        library: "mimique_web_report",
+        example: false,
+        features: None,
+        profile: "web-solver",
+        opt_level: "-O3",
     },
     Module {
         name: "solver",

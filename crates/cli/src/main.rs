@@ -8,6 +8,7 @@ mod analyze;
 mod annotate;
 mod backup;
 mod border_options;
+mod capsule;
 mod capture_options;
 mod check;
 mod compare;
@@ -94,6 +95,8 @@ enum Command {
     Export(export::Args),
     /// Write a study as plain files that any web host can serve, without the server
     ExportSite(export_site::Args),
+    /// Write a study with its answers, report and stimuli as one file that opens in any browser
+    Capsule(capsule::Args),
     /// Export the sessions of a study that was hosted as files
     Import(import::Args),
     /// Save the database while the server runs
@@ -143,6 +146,7 @@ fn main() -> ExitCode {
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),
+        Command::Capsule(args) => capsule::run(&args, json),
         Command::Import(args) => import::run(args, json),
         Command::Backup(args) => backup::run(args, json),
         Command::Restore(args) => restore::run(args, json),

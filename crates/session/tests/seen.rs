@@ -2,13 +2,13 @@
 
 mod support;
 
-use mimique_session::flow::{BESIDE_CANVAS, OWN_CANVAS, Seen, SeenPage, View};
+use mimique_session::flow::{BESIDE_CANVAS, KeptFrames, OWN_CANVAS, Plays, Seen, SeenPage, View};
 use mimique_session::{EventKind, PlayLog};
 use serde_json::Value;
 use support::{Page, first_answer, study_text};
 
-fn seen(page: &Page, frames_of: Option<usize>) -> Vec<SeenPage> {
-    let mut seen = Seen::new(&page.plan, frames_of);
+fn seen(page: &Page, frames: KeptFrames) -> Vec<SeenPage> {
+    let mut seen = Seen::new(&page.plan, frames);
     for event in &page.stored {
         seen.add(event.sequence, event.at_ms, EventKind::from_body(&event.body));
     }
@@ -32,7 +32,7 @@ fn steps_of(seen: &[SeenPage]) -> Vec<&str> {
 fn every_page_is_seen_in_order_with_what_was_answered() {
     let mut page = Page::open(&study_text("demo.json"), 1);
     page.finish();
-    let seen = seen(&page, None);
+    let seen = seen(&page, KeptFrames::None);
     // A gate without rules is passed before anybody sees it.
     let steps = page.plan.steps.iter().map(|step| &*step.id).filter(|id| *id != "device");
     let steps: Vec<&str> = steps.collect();
@@ -67,15 +67,27 @@ fn every_page_is_seen_in_order_with_what_was_answered() {
 }
 
 #[test]
-fn frames_are_kept_of_one_page() {
+fn frames_are_kept_of_the_pages_that_are_asked_for() {
     let mut page = Page::open(&study_text("demo.json"), 1);
     page.finish();
-    let place = seen(&page, None).iter().rposition(|own| !own.plays.is_empty()).unwrap();
-    for (at, own) in seen(&page, Some(place)).iter().enumerate() {
+    let place =
+        seen(&page, KeptFrames::None).iter().rposition(|own| !own.plays.is_empty()).unwrap();
+    for (at, own) in seen(&page, KeptFrames::OfPage(place)).iter().enumerate() {
         for play in &own.plays {
             let kept = if at == place { 3 } else { 0 };
             assert_eq!((play.log.frames.len(), play.frames), (kept, 3), "{at}");
         }
+    }
+    let all = seen(&page, KeptFrames::All);
+    let plays: Vec<_> = all.iter().flat_map(|own| &own.plays).collect();
+    assert_eq!(plays.len(), page.played.len());
+    assert!(plays.iter().all(|play| play.log.frames.len() == 3));
+    // As they are drawn again: each with its clip and its frames.
+    for own in all.iter().filter(|own| !own.plays.is_empty()) {
+        let drawn = serde_json::to_value(Plays::of(&page.plan, own)).unwrap();
+        assert_eq!(drawn["plays"][0]["clips"][0]["clip"], own.plays[0].clips[0].clip.as_str());
+        assert_eq!(drawn["plays"][0]["frames"].as_array().unwrap().len(), 3);
+        assert!(own.step.starts_with("faces/"), "{}", own.step);
     }
 }
 
@@ -91,7 +103,7 @@ fn a_play_cut_short_is_seen_too_and_the_last_page_of_a_session_under_way_is_not_
     cut.body["log"]["aborted"] = Value::from("page hidden");
     page.reload();
     page.act(&mut first_answer);
-    let seen = seen(&page, None);
+    let seen = seen(&page, KeptFrames::None);
     let [before @ .., last] = &seen[..] else { panic!() };
     assert!(before.iter().all(|own| own.left_ms.is_some()));
     assert_eq!(last.left_ms, None);
@@ -104,7 +116,7 @@ fn a_play_cut_short_is_seen_too_and_the_last_page_of_a_session_under_way_is_not_
 fn both_clips_of_a_pair_are_seen_on_their_canvases() {
     let mut page = Page::open(&study_text("study2b.json"), 3);
     page.finish();
-    let seen = seen(&page, None);
+    let seen = seen(&page, KeptFrames::None);
     let plays: Vec<_> = seen.iter().flat_map(|own| &own.plays).collect();
     assert!(plays.len() >= 36, "{}", plays.len());
     for play in plays {
@@ -118,7 +130,7 @@ fn both_clips_of_a_pair_are_seen_on_their_canvases() {
 fn who_declines_has_seen_the_agreement_alone() {
     let mut page = Page::open(&study_text("demo.json"), 4);
     page.send(mimique_session::flow::Input::Decline);
-    let seen = seen(&page, None);
+    let seen = seen(&page, KeptFrames::None);
     assert_eq!(steps_of(&seen), ["consent"]);
     assert!(seen[0].left_ms.is_some());
 }

@@ -1,5 +1,4 @@
-// A picture of the guide: taken anew it is held against the one that stands there. MIMIQUE_UPDATE_GOLDEN=1 writes it anew; look
-// at it before you keep it.
+// Pictures of the guide: docs/guide/pictures. MIMIQUE_UPDATE_GOLDEN=1 writes them anew; look at them before you keep them.
 
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync } from "node:fs";

@@ -13,9 +13,10 @@ use crate::process::{cargo, output, root};
 pub type Root = (&'static str, &'static str);
 
 /// The crates of the pages, which the program has embedded.
-pub const PAGES: [&str; 5] = [
+pub const PAGES: [&str; 6] = [
     "mimique-app",
     "mimique-web-adaptive",
+    "mimique-web-report",
     "mimique-web-solver",
     "mimique-web-stage",
     "mimique-web-studio",

@@ -113,7 +113,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 }
 
 /// The study of a file without errors; its warnings are printed.
-fn checked_study(file: &Path) -> anyhow::Result<CheckedStudy> {
+pub fn checked_study(file: &Path) -> anyhow::Result<CheckedStudy> {
     let report = check_file(file)?;
     let mut problems = Vec::new();
     for issue in &report.issues {
@@ -218,26 +218,31 @@ fn write(folder: &mut impl Files, site: &Exported<'_>, jatos: bool) -> anyhow::R
 
 /// Modules, scripts and styles of the participant's page.
 fn write_assets(folder: &mut impl Files, assets: &Assets, prefix: &str) -> anyhow::Result<()> {
-    for (name, bytes) in assets.files() {
-        // Pages of the server, and what only they need.
-        let servers = name.ends_with(".html")
-            || ["researcher/", "studio/", "studio.", "studio_bg."]
-                .iter()
-                .any(|start| name.starts_with(start));
-        if !servers {
-            folder.put(&format!("{prefix}/{name}"), bytes)?;
-        }
+    for (name, bytes) in assets.files().filter(|(name, _)| is_of_participants(name)) {
+        folder.put(&format!("{prefix}/{name}"), bytes)?;
     }
     Ok(())
 }
 
+/// Whether a file of the pages is one that participants' pages need: none of the pages (templates), and nothing of what
+/// only researchers, the studio or a capsule loads.
+pub fn is_of_participants(name: &str) -> bool {
+    let others =
+        ["capsule/", "report.", "report_bg.", "researcher/", "studio/", "studio.", "studio_bg."];
+    !name.ends_with(".html") && !others.iter().any(|start| name.starts_with(start))
+}
+
 /// The packs of all clips, each once.
-fn write_packs(folder: &mut impl Files, hosted: &HostedStudy, packs: &Path) -> anyhow::Result<()> {
+pub fn packs_of(hosted: &HostedStudy) -> Vec<&str> {
     let clips = hosted.bundle().clips.values();
     let mut hashes: Vec<&str> = clips.flat_map(|clip| clip.packs()).collect();
     hashes.sort_unstable();
     hashes.dedup();
-    for hash in hashes {
+    hashes
+}
+
+fn write_packs(folder: &mut impl Files, hosted: &HostedStudy, packs: &Path) -> anyhow::Result<()> {
+    for hash in packs_of(hosted) {
         let path = packs.join(hash);
         let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
         folder.put(&format!("packs/{hash}"), &bytes)?;
@@ -246,7 +251,12 @@ fn write_packs(folder: &mut impl Files, hosted: &HostedStudy, packs: &Path) -> a
 }
 
 /// What `site.json` says: the study, its clips, its codes, and where the answers go.
-fn site_file(study: &Study, hosted: &HostedStudy, stage: Stage, hosting: StaticHosting) -> SiteFile {
+pub fn site_file(
+    study: &Study,
+    hosted: &HostedStudy,
+    stage: Stage,
+    hosting: StaticHosting,
+) -> SiteFile {
     let recruitment = &study.recruitment;
     // By the stored word, which names one standing: those that one exported word joins may have codes of their own.
     let code = |standing: Standing| {

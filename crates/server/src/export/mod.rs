@@ -35,7 +35,7 @@ use mimique_storage::Storage;
 pub use parts::{Export, Part};
 pub(crate) use pieces::exclusions;
 use sources::Sources;
-pub use stimuli::stimuli;
+pub use stimuli::{stimuli, stimuli_of};
 pub use unstored::{Unstored, Written};
 pub(crate) use zipped::zip;
 

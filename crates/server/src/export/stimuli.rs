@@ -4,12 +4,14 @@ use std::collections::BTreeSet;
 
 use mimique_storage::Storage;
 use mimique_study::columns::STIMULI_COLUMNS;
+use mimique_study::{Study, config_hash};
 use serde_json::Value;
 
 use super::choose;
 use super::csv::{self, Cells};
 use super::error::ExportError;
-use super::sources::Sources;
+use super::sources::{Sources, Version};
+use crate::hosting::Hosting;
 
 /// The table as CSV, and the study's identifier. A clip that was prepared anew for a later version, and differs, has a row more.
 ///
@@ -22,6 +24,18 @@ pub async fn stimuli(
     let study_id = choose(storage, study_id).await?;
     let table = table(&Sources::load(storage, &study_id).await?)?;
     Ok((study_id, table))
+}
+
+/// The table of a study that lies in no database: its file, its clips as prepared, what was measured of them.
+///
+/// # Errors
+/// The file is no study.
+pub fn stimuli_of(file: Value, hosting: &Hosting) -> Result<Vec<u8>, ExportError> {
+    let study = Study::from_value(&file).map_err(|error| ExportError::Form(error.to_string()))?;
+    let study_id = study.id.clone();
+    let (clips, measures) = (hosting.clips.clone(), hosting.measures.clone());
+    let version = Version { config_hash: config_hash(&file), file, study, clips, measures };
+    table(&Sources { study_id, versions: vec![version] })
 }
 
 /// The table of the versions of a study.

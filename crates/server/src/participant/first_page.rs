@@ -6,7 +6,7 @@ use mimique_session::flow::{AgreementView, SectionView};
 use mimique_study::{Multilingual as _, Study};
 
 /// Title and agreement of a study in one of its languages.
-pub(crate) fn first_page(study: &Study, language: &str) -> Markup {
+pub fn first_page(study: &Study, language: &str) -> Markup {
     let agreement = AgreementView::new(&study.projection(), language, &study.words(language));
     html! {
         header.site-header.narrow { span.title { (agreement.title) } }

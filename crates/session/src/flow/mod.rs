@@ -25,6 +25,7 @@ mod input;
 mod levels;
 mod needs;
 mod placed;
+mod plays;
 mod presses;
 mod render;
 mod render_gate;
@@ -45,8 +46,9 @@ pub use gate::{CARD_HEIGHT_MM, CARD_WIDTH_MM, SOUND_HEARD};
 pub use input::Input;
 pub use mimique_study::{ChoiceView, QuestionKindView};
 pub use placed::{BESIDE_CANVAS, OWN_CANVAS, PlacedClip, canvas_of_place};
+pub use plays::Plays;
 pub use render::view;
-pub use seen::{Seen, SeenPage, SeenPlay};
+pub use seen::{KeptFrames, Seen, SeenPage, SeenPlay};
 pub use state::{Live, Play, State};
 pub use update::update;
 pub use view::{

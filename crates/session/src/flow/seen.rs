@@ -13,6 +13,8 @@ use crate::plan::{Plan, Step};
 /// A page or a trial as it stood on the screen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenPage {
+    /// Identifier of the step.
+    pub step: String,
     /// The screen with its last answers; its machinery (what is loaded, what can be pressed) is that of no time.
     pub view: View,
     /// When it stood on the screen, page clock.
@@ -34,8 +36,29 @@ pub struct SeenPlay {
     pub in_turn: bool,
     /// How many frames were shown.
     pub frames: usize,
-    /// What the stage measured; its frames on the page that they are kept of alone.
+    /// What the stage measured; its frames on the pages of which they are kept.
     pub log: PlayLog,
+}
+
+/// Of which pages frames are kept: they are most of what a session holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KeptFrames {
+    /// Of none.
+    None,
+    /// Of the page at this place, from 0.
+    OfPage(usize),
+    /// Of every page.
+    All,
+}
+
+impl KeptFrames {
+    fn has(self, page: usize) -> bool {
+        match self {
+            Self::None => false,
+            Self::OfPage(place) => place == page,
+            Self::All => true,
+        }
+    }
 }
 
 /// Follows the events of a session, one after the other.
@@ -43,16 +66,16 @@ pub struct SeenPlay {
 pub struct Seen<'p> {
     plan: &'p Plan,
     state: State,
-    frames_of: Option<usize>,
+    frames: KeptFrames,
     plays: Vec<SeenPlay>,
     pages: Vec<SeenPage>,
 }
 
 impl<'p> Seen<'p> {
-    /// Before the first event. Frames, most of what a session holds, are kept of the page at one place alone, from 0.
-    pub fn new(plan: &'p Plan, frames_of: Option<usize>) -> Self {
+    /// Before the first event.
+    pub fn new(plan: &'p Plan, frames: KeptFrames) -> Self {
         let state = State::new(plan, "");
-        Self { plan, state, frames_of, plays: Vec::new(), pages: Vec::new() }
+        Self { plan, state, frames, plays: Vec::new(), pages: Vec::new() }
     }
 
     /// Adds the next stored event; `kind` is none where this version cannot read it.
@@ -78,7 +101,7 @@ impl<'p> Seen<'p> {
         let record = &self.state.record;
         if record.events > 0 && record.standing.is_open() && self.here().is_some() {
             let plays = std::mem::take(&mut self.plays);
-            let page = self.page(None);
+            let page = self.page(self.here(), None);
             self.pages.push(SeenPage { plays, ..page });
         }
         self.pages
@@ -106,13 +129,14 @@ impl<'p> Seen<'p> {
             // What was sent is what stood there last.
             self.state.record.drafts = answers.clone();
         }
-        Some(self.page(Some(at_ms)))
+        Some(self.page(Some(here), Some(at_ms)))
     }
 
     /// The page on the screen, without its plays.
-    fn page(&self, left_ms: Option<f64>) -> SeenPage {
+    fn page(&self, here: Option<&Step>, left_ms: Option<f64>) -> SeenPage {
         let attempt = &self.state.record.attempt;
         SeenPage {
+            step: here.map_or_else(String::new, |step| step.id.clone()),
             view: view(self.plan, &self.state),
             shown_ms: attempt.shown_ms,
             left_ms,
@@ -133,7 +157,7 @@ impl<'p> Seen<'p> {
         };
         let mut log = (**log).clone();
         let frames = log.frames.len();
-        if self.frames_of != Some(self.pages.len()) {
+        if !self.frames.has(self.pages.len()) {
             log.frames = Vec::new();
         }
         Some(SeenPlay { clips, in_turn: alone.is_none() && trial.is_in_turn(), frames, log })

@@ -3,6 +3,7 @@
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::response::{IntoResponse as _, Response};
+use mimique_session::flow::KeptFrames;
 use mimique_storage::Role;
 
 use super::studies::{session, visible};
@@ -22,7 +23,7 @@ pub(crate) async fn page(
 ) -> Result<Response, Error> {
     let study = visible(&app, &who, &id, Role::Analyst)?;
     let session = session(&app, study.id(), number).await?;
-    let replay = Replay::load(&app.storage, study.id(), &session, None).await?;
+    let replay = Replay::load(&app.storage, study.id(), &session, KeptFrames::None).await?;
     let subject = mimique_storage::participant_id(number);
     audit(&app, &who, "replay a session", study.id(), &subject).await?;
     let frame = Frame::in_study(&app, &who, study.id());
@@ -39,7 +40,8 @@ pub(crate) async fn plays(
     let study = visible(&app, &who, &id, Role::Analyst)?;
     let session = session(&app, study.id(), number).await?;
     let place = page.checked_sub(1).ok_or(Error::NotFound)?;
-    let replay = Replay::load(&app.storage, study.id(), &session, Some(place)).await?;
+    let replay =
+        Replay::load(&app.storage, study.id(), &session, KeptFrames::OfPage(place)).await?;
     let plays = replay.plays(place).ok_or(Error::NotFound)?;
     Ok(Json(plays).into_response())
 }

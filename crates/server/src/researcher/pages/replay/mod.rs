@@ -2,8 +2,9 @@
 //! page's script shows one after the other, and draws each clip again on the frames of its log.
 
 mod answers;
+pub(crate) mod player;
 mod screen;
-mod words;
+pub(crate) mod words;
 
 use axum::response::Response;
 use maud::{Markup, html};
@@ -15,6 +16,7 @@ use super::frame::{Frame, time};
 use super::study::browser;
 use crate::researcher::replay::Replay;
 use answers::answer_in_words;
+use player::player;
 use screen::{Screen, screen};
 use words::script_words;
 
@@ -58,12 +60,12 @@ pub(crate) fn replay_page(
             p.soft { (frame.say("Nothing is stored.", "Rien n’est conservé.")) }
         } @else {
             (pages_bar(frame, &screens, &session.language))
-            div #replay data-study=(study) data-plays=(address) data-words=(script_words(frame)) {
+            div #replay data-study=(study) data-plays=(address) data-words=(script_words(frame.language)) {
                 @for (number, (page, screen)) in (1..).zip(replay.pages.iter().zip(&screens)) {
                     (seen_page(frame, number, page, screen, &session.language))
                 }
             }
-            (player(frame))
+            (player(frame.language))
         }
     };
     frame.page_with(&format!("{title} · {study}"), &address, &head, &body)
@@ -161,67 +163,6 @@ fn play_line(frame: &Frame, SeenPlay { clips, frames, log, .. }: &SeenPlay) -> M
         ))
         @if let Some(why) = &log.aborted {
             " (" (frame.say("cut short: ", "interrompu : ")) code { (why) } ")"
-        }
-    }
-}
-
-/// What draws the clips again; the script puts it into the page that is shown.
-fn player(frame: &Frame) -> Markup {
-    let control = |english, french| frame.say(english, french);
-    html! {
-        section #player aria-label=(control("Clip as it was seen", "Le clip tel qu’il a été vu")) hidden {
-            p {
-                label #which-label {
-                    (control("Play", "Lecture")) " "
-                    select #which {}
-                }
-            }
-            div.replay-stages #stages {}
-            div #problem .notice.bad role="alert" hidden {}
-            div #strip .replay-strip {}
-            p.soft #legend {
-                (control(
-                    "A tick for each frame, when it was shown; tall and orange where it came late: until then the frame before it stood.",
-                    "Un trait par image, au moment où elle a été affichée ; haut et orange si elle est venue en retard : jusque-là, la précédente est restée.",
-                ))
-            }
-            div.preview-transport role="group" aria-label=(control("Playback", "Commandes de lecture")) {
-                div.preview-scrub {
-                    label.visually-hidden for="scrub" { (control("Time since the first frame", "Temps depuis la première image")) }
-                    input #scrub type="range" min="0" max="1" step="1" value="0";
-                    output #clock .number for="scrub" {}
-                }
-                div.preview-buttons {
-                    button #play .primary type="button" aria-keyshortcuts="Space" { (control("Play", "Lire")) }
-                    button #back type="button" aria-keyshortcuts="," aria-label=(control("One shown frame back", "Une image affichée en arrière")) { "◀︎ " (control("frame", "image")) }
-                    button #forth type="button" aria-keyshortcuts="." aria-label=(control("One shown frame on", "Une image affichée en avant")) { (control("frame", "image")) " ▶︎" }
-                    label.preview-check { input #loop type="checkbox"; (control("Loop", "En boucle")) }
-                    label {
-                        (control("Speed", "Vitesse")) " "
-                        select #speed {
-                            option value="1" { "1 ×" }
-                            option value="0.5" { "½ ×" }
-                            option value="0.25" { "¼ ×" }
-                            option value="0.1" { "¹⁄₁₀ ×" }
-                        }
-                    }
-                }
-                p.soft.preview-keys {
-                    kbd { "Space" } (control(" play or pause, ", " lire ou arrêter, "))
-                    kbd { "," } " " kbd { "." } (control(" one frame, ", " une image, "))
-                    kbd { "L" } (control(" loop, ", " en boucle, "))
-                    kbd { "S" } (control(" speed, ", " vitesse, "))
-                    kbd { "P" } " " kbd { "N" } (control(" page", " page"))
-                }
-            }
-            p #same role="status" {}
-            p #late .replay-late {}
-            p #heard .soft hidden {
-                (control(
-                    "The clip’s sound is not played here; the preview plays it.",
-                    "Le son du clip n’est pas joué ici ; l’aperçu le joue.",
-                ))
-            }
         }
     }
 }

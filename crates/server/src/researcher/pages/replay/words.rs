@@ -1,12 +1,11 @@
-//! What the script of the replay says, in the reader's language; `{…}` stand for values.
+//! What the script of a replay says, in the reader's language; `{…}` stand for values.
 
+use mimique_analysis::Language;
 use serde_json::json;
 
-use crate::researcher::pages::frame::Frame;
-
 /// The words as JSON.
-pub(super) fn script_words(frame: &Frame) -> String {
-    let say = |english: &'static str, french: &'static str| frame.say(english, french);
+pub fn script_words(language: Language) -> String {
+    let say = |english: &'static str, french: &'static str| language.pick(english, french);
     json!({
         "play": say("Play", "Lire"),
         "pause": say("Pause", "Pause"),
