@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::arena_file::{ARENA_FILE, Arena, ArenaFileError};
+use crate::arena_file::{ARENA_FILE, Arena};
+use crate::arena_problem::ArenaFileError;
 use crate::submission::{Submission, content_hash, sha256};
 
 /// An arena with what was submitted to it.

@@ -8,7 +8,8 @@ use mimique_mocap::{CaptureFile, ReadOptions};
 use mimique_stimulus::{MarkerMap, read_segments, read_sound};
 use mimique_study::SegmentSound;
 
-use crate::arena_file::{Arena, ArenaCapture, ArenaProblem, ArenaSegment, lines};
+use crate::arena_file::{Arena, ArenaCapture, ArenaSegment};
+use crate::arena_problem::{ArenaProblem, lines};
 
 /// What an arena is made of.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::votes::{ExportedVotes, LeftOut, Vote};
+use crate::left_out::LeftOut;
+use crate::votes::{ExportedVotes, Vote};
 
 /// Votes that are not pooled, for one reason.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
