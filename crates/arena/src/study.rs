@@ -29,6 +29,8 @@ pub struct ArenaStudy {
     pub wishes: Wishes,
     /// The same read.
     pub study: Study,
+    /// Pairs that each participant is shown: those that the arena asks for, or as many as there are.
+    pub pairs: usize,
     /// The files that it names, paths in the arena's folder and in the study's alike.
     pub files: Vec<String>,
 }
@@ -74,7 +76,10 @@ pub fn arena_study(folder: &ArenaFolder) -> Result<ArenaStudy, NoStudy> {
     }
     let mut parts: Parts = serde_json::from_str(DESIGN)?;
     parts.title = json!({ "en": arena.title, "fr": arena.title });
-    parts.components["duels"]["schedule"]["perParticipant"] = json!(arena.per_participant);
+    // The first half is dealt, no pair of clips twice.
+    let clips = submissions.len() * (submissions.len() - 1) / 2 * arena.segments.len();
+    let pairs = arena.per_participant.min(2 * clips);
+    parts.components["duels"]["schedule"]["perParticipant"] = json!(pairs);
     let mut stimuli = ArenaParts::default();
     stimuli.avatars.insert("head".to_owned(), json!({ "file": arena.avatar }));
     stimuli.files.push(arena.avatar.clone());
@@ -107,7 +112,7 @@ pub fn arena_study(folder: &ArenaFolder) -> Result<ArenaStudy, NoStudy> {
     let rules = json!({ "failedAttentionChecks": 0, "incomplete": true, "shortestRtMs": 300, "lateFrameShare": 0.2 });
     composed.study["exclusions"] = rules;
     let study = Study::from_value(&composed.study)?;
-    Ok(ArenaStudy { composed, wishes, study, files })
+    Ok(ArenaStudy { composed, wishes, study, pairs, files })
 }
 
 /// What the submissions bring.

@@ -34,7 +34,7 @@ pub struct Vote {
     pub right_hash: String,
     /// The day, YYYY-MM-DD, by the participant's clock.
     pub day: String,
-    /// How long the answer took, milliseconds.
+    /// How long the answer took from when it could be given, milliseconds.
     pub rt_ms: Option<f64>,
     /// Of a pair that was chosen by the answers so far its batch.
     pub batch: Option<u32>,
@@ -120,6 +120,7 @@ impl Columns {
         let others = [
             "beside_side",
             "rt",
+            "rt_open",
             "batch",
             "renderer",
             "frames",
@@ -195,7 +196,7 @@ impl Row<'_> {
             left_hash,
             right_hash,
             day: self.text(columns.start).chars().take(10).collect(),
-            rt_ms: self.number("rt"),
+            rt_ms: self.number("rt_open").or_else(|| self.number("rt")),
             batch: self.rest("batch").and_then(|batch| batch.parse().ok()),
         })
     }

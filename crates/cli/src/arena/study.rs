@@ -66,7 +66,7 @@ pub fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         "{place}/study.json: {} on {}, {} of them for each participant; configuration {}",
         counted(methods, "method"),
         counted(folder.arena.segments.len(), "segment"),
-        counted(folder.arena.per_participant, "pair"),
+        counted(made.pairs, "pair"),
         &hash[..12]
     )?;
     if kept {
