@@ -366,38 +366,29 @@ fn arena_refuses_bad_input_whole_and_writes_nothing() {
 #[test]
 fn arena_shows_vertices_on_the_same_head() {
     let place = place();
-    // The skin that the weights of lsts give, as vertices.
-    let array = place.arg("lsts.npy");
-    ok(&[
-        "solve",
-        "--method",
-        "recorded",
-        "--avatar",
-        &place.arg("sample/head.glb"),
-        "--mocap",
-        &place.arg("lsts.csv"),
-        "--out",
-        &place.arg("played.csv"),
-        "--vertices",
-        &array,
-    ]);
+    // The skin that the weights of lsts give, as vertices of each segment.
+    for segment in ["joy", "fear"] {
+        let weights = place.path(&format!("faces/submissions/lsts/{segment}.csv"));
+        write_skin(
+            &place.path("sample/head.glb"),
+            &weights,
+            &place.path(&format!("{segment}.npy")),
+        );
+    }
+    let arrays = [place.arg("joy.npy"), place.arg("fear.npy")];
     copied(&place.path("faces"), &place.path("mesh"));
-    let args = [
-        "arena",
-        "submit",
-        &place.arg("mesh"),
-        "--method",
-        "mesh",
-        "--vertices",
-        &array,
-        "--author",
-        "A. Uthor",
-        "--licence",
-        "CC0-1.0",
-        "--rate",
-        "200",
-    ];
-    let said = ok(&args);
+    let args = |rate: &'static str| {
+        let mut args = ["arena", "submit", &place.arg("mesh"), "--method", "mesh", "--rate", rate]
+            .map(str::to_owned)
+            .to_vec();
+        args.extend(
+            ["--author", "A. Uthor", "--licence", "CC0-1.0", "--replace", "--vertices"]
+                .map(str::to_owned),
+        );
+        args.extend(arrays.clone());
+        args
+    };
+    let said = ok(&args("200"));
     assert!(said.contains("principal shapes give every vertex again to within"), "{said}");
     let submission = json(&place.path("mesh/submissions/mesh/submission.json"));
     assert_eq!(submission["kind"], "vertices");
@@ -414,7 +405,33 @@ fn arena_shows_vertices_on_the_same_head() {
         &place.arg("mesh-votes"),
     ]);
     assert!(said.contains("between 5 methods"), "{said}");
-    // Another rate is another performance.
-    let said = refused(&[&args[..12], &["--replace", "--rate", "100"]].concat());
-    assert!(said.contains("100 frames per second; take has 200"), "{said}");
+    // Another rate is another performance; what is not at the head is named with its place.
+    let said = refused(&args("100"));
+    assert!(said.contains("joy.npy: 100 frames per second; joy has 200"), "{said}");
+    let mut bytes = std::fs::read(place.path("joy.npy")).unwrap();
+    let last = bytes.len() - 4;
+    bytes[last..].copy_from_slice(&0.4f32.to_le_bytes());
+    std::fs::write(place.path("joy.npy"), bytes).unwrap();
+    let said = refused(&args("200"));
+    assert!(
+        said.contains("joy.npy: frame 99, vertex ") && said.contains(" mm from its place at rest"),
+        "{said}"
+    );
+}
+
+/// Writes the places of the skin's vertices at weights of the head, a frame each.
+fn write_skin(head: &Path, weights: &Path, to: &Path) {
+    let head = mimique_avatar_files::read_avatar(head).unwrap().avatar;
+    let skins = || head.meshes.iter().filter(|mesh| mesh.part == mimique_avatar::Part::Skin);
+    let table = std::fs::read_to_string(weights).unwrap();
+    let frames: Vec<Vec<f64>> = (table.lines().skip(1))
+        .map(|line| line.split(',').skip(2).map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let vertices: usize = skins().map(|mesh| mesh.positions.len()).sum();
+    let mut bytes = mimique_mocap::npy_header("<f4", &[frames.len(), vertices, 3]);
+    for frame in &frames {
+        let places = skins().flat_map(|mesh| mesh.posed(frame)).flatten();
+        bytes.extend(places.flat_map(f32::to_le_bytes));
+    }
+    std::fs::write(to, bytes).unwrap();
 }

@@ -135,7 +135,7 @@ fn result(submissions: &[&Submission], ranking: &Ranking) -> Vec<Block> {
 fn name(submissions: &[&Submission], method: &str) -> String {
     let own = submissions.iter().find(|own| own.details.name == method);
     let is_reference = own.is_some_and(|own| own.details.reference);
-    if is_reference { format!("{method} (recorded)") } else { method.to_owned() }
+    if is_reference { format!("{method} (reference)") } else { method.to_owned() }
 }
 
 pub(super) fn submitted(submissions: &[&Submission], method: &str) -> String {
