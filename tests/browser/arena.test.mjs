@@ -8,7 +8,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { lost, violations } from "./lib/access.mjs";
+import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
