@@ -226,9 +226,7 @@ fn arena_laboratory_with_another_head_is_left_out_with_both_hashes() {
 #[test]
 fn arena_takes_another_method_and_keeps_votes_and_what_the_laboratory_wrote() {
     let place = place();
-    for (from, to) in [("faces", "grown")] {
-        copied(&place.path(from), &place.path(to));
-    }
+    copied(&place.path("faces"), &place.path("grown"));
     ok(&["arena", "study", &place.arg("grown"), "--out", &place.arg("grown-study")]);
     let before = simulated(place, "grown-study/study.json", "20", "5", "before");
     let file = place.path("grown-study/study.json");

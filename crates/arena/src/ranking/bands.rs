@@ -30,8 +30,8 @@ pub(super) fn bands(placed: &mut [Placed], differences: &[Difference]) -> Vec<Ba
     };
     let mut bands: Vec<Band> = Vec::new();
     let mut first = 0;
-    for place in 0..names.len() {
-        placed[place].band = bands.len() + 1;
+    for (place, own) in placed.iter_mut().enumerate() {
+        own.band = bands.len() + 1;
         if ends_after(place) {
             let mut methods = names[first..=place].to_vec();
             methods.sort();
