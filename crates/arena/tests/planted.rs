@@ -312,6 +312,6 @@ fn a_session_counts_once_wherever_it_is_and_the_order_of_exports_does_not_matter
 fn what_is_no_export_of_an_arena_is_refused_with_the_column() {
     let refused = |bytes: &str| read_export("x", bytes.into(), &stimuli()).unwrap_err().to_string();
     assert!(refused("a,b\n1,2\n").contains("participant_id"), "{}", refused("a,b\n1,2\n"));
-    let none = refused(&format!("{HEADER}\n{}\n", ",".repeat(18)));
+    let none = refused(&format!("{HEADER}\nperson{}\n", ",".repeat(18)));
     assert!(none.starts_with("no row answers \"better\""), "{none}");
 }

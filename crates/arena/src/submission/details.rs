@@ -84,6 +84,6 @@ mod tests {
             submitted: "2026-02-28".to_owned(),
             ..SubmissionDetails::default()
         };
-        assert_eq!(check_details(&sound), []);
+        assert!(check_details(&sound).is_empty());
     }
 }
