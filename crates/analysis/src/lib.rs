@@ -52,7 +52,7 @@ pub mod components {
     pub use crate::report::document_files;
     pub use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
     pub use crate::report::figure::{
-        ConfusionRow, ConfusionWords, CoursePanel, confusion_matrix, time_courses,
+        ConfusionRow, ConfusionWords, CoursePanel, Ranked, confusion_matrix, ranking, time_courses,
     };
 }
 

@@ -6,6 +6,7 @@
 mod account;
 mod analyze;
 mod annotate;
+mod arena;
 mod backup;
 mod border_options;
 mod capsule;
@@ -89,6 +90,8 @@ enum Command {
     Exertion(Box<exertion::Args>),
     /// Draw random courses of action units, for dynamic reverse correlation
     Trajectories(trajectories::Args),
+    /// Compare methods without end: submissions, votes pooled across laboratories, a ranking
+    Arena(Box<arena::Args>),
     /// Recover a researcher's account; list the accounts
     Account(account::Args),
     /// Write the responses of a study to a file
@@ -143,6 +146,7 @@ fn main() -> ExitCode {
         Command::Annotate(args) => annotate::run(args, json),
         Command::Exertion(args) => exertion::run(*args, json),
         Command::Trajectories(args) => trajectories::run(args, json),
+        Command::Arena(args) => arena::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::ExportSite(args) => export_site::run(args, json),

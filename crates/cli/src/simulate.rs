@@ -9,11 +9,12 @@ use anyhow::Context as _;
 use mimique_analysis::{Parameters, SimulatedSession, Simulation};
 use mimique_server::export::{Exported, Format, Unstored};
 use mimique_stats::Table;
-use mimique_study::Study;
+use mimique_stimulus::{Places, prepare};
 use mimique_study::text::counted;
+use mimique_study::{ClipSource, Study};
 
 use crate::output;
-use crate::study_file::load;
+use crate::study_file::{StudyFile, load};
 
 /// Most participants of one simulation.
 const MOST_PARTICIPANTS: u64 = 1_000_000;
@@ -38,6 +39,9 @@ pub struct Args {
     /// csv as JSON lines; events: all that the page would send; psych-ds: a Psych-DS data set
     #[arg(long, default_value = "csv", value_parser = format)]
     format: Format,
+    /// Prepare the clips first, as serve does, so that the export says by hashes what was shown
+    #[arg(long)]
+    prepare: bool,
     /// Folder to write to: the export, and parameters.json
     #[arg(long)]
     out: PathBuf,
@@ -97,7 +101,8 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     if args.no_effects {
         parameters = parameters.without_effects(&study);
     }
-    let writer = Unstored::new(file, BTreeMap::new(), args.format).with_context(place)?;
+    let clips = if args.prepare { prepared(&args.study, &study)? } else { BTreeMap::new() };
+    let writer = Unstored::new(file, clips, args.format).with_context(place)?;
     let simulation = Simulation::new(&study, writer.config_hash(), &parameters, args.seed)
         .with_context(|| match &args.assumptions.parameters {
             Some(path) => path.display().to_string(),
@@ -135,6 +140,20 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         writeln!(out, "  {}", path.display())?;
     }
     Ok(())
+}
+
+/// The clips of a study as a server prepares them.
+fn prepared(file: &Path, study: &Study) -> anyhow::Result<BTreeMap<String, ClipSource>> {
+    let opened = StudyFile::open(file)?;
+    let packs = tempfile::tempdir().context("a folder for the packs")?;
+    let found = prepare(study, &Places::of(opened.path(), packs.path()), &mut |_| ());
+    let found = found.map_err(|faults| {
+        let said = faults
+            .iter()
+            .map(|fault| format!("{}: {}", file.display(), opened.said(&fault.to_string())));
+        anyhow::anyhow!("{}", said.collect::<Vec<_>>().join("\nerror: "))
+    })?;
+    Ok(found.clips)
 }
 
 /// Writes the export and `parameters.json` into a folder; returns the files.

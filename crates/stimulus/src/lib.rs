@@ -60,8 +60,8 @@ mod take;
 mod weights;
 
 pub use avatar::{
-    AvatarSkin, SplitError, VertexBank, VertexBankError, VertexBankOptions, VertexFrames,
-    lock_shapes, split_shapes, surface_avatar,
+    AvatarSkin, NoSequenceAvatar, SplitError, VertexBank, VertexBankError, VertexBankOptions,
+    VertexFrames, lock_shapes, sequence_avatar, split_shapes, surface_avatar,
 };
 pub use built_in::{
     built_in_capture, built_in_labels, built_in_map, built_in_training, built_in_weights,

@@ -173,7 +173,7 @@ pub fn run(mut args: Args, json: bool) -> anyhow::Result<()> {
 }
 
 /// Writes and copies the files of a study's folder, and checks what is there as `mimique check` does.
-fn fill(
+pub(crate) fn fill(
     fresh: &Path,
     made: &[(String, String)],
     copied: &[(PathBuf, String)],

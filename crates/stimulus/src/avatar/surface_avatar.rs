@@ -20,7 +20,7 @@ use mimique_solver::{
 use crate::AvatarSkin;
 
 /// Displacements below this at weight 1 are left out, metres: a two-thousandth of the marker's way.
-const LEAST_DELTA_M: f32 = 5e-6;
+pub(super) const LEAST_DELTA_M: f32 = 5e-6;
 
 /// The avatar that a surface is shown with. `bank` are the operators of the avatar's own shapes at
 /// the same markers; `response` is of `skin`.
@@ -101,7 +101,7 @@ fn following<'r>(count: usize, p: usize, row: impl Fn(usize) -> &'r [f64]) -> Ve
 }
 
 /// What the bank does to a mesh at some weights, as one shape.
-fn posed(mesh: &Mesh, weights: &[f64]) -> SparseShape {
+pub(super) fn posed(mesh: &Mesh, weights: &[f64]) -> SparseShape {
     let mut dense = vec![DVec3::ZERO; mesh.positions.len()];
     for (shape, w) in mesh.shapes.iter().zip(weights) {
         for (&v, d) in shape.vertices.iter().zip(&shape.deltas) {

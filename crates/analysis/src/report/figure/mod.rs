@@ -31,7 +31,7 @@ pub(crate) use equivalence::{EquivalenceInterval, equivalence_zone};
 pub(crate) use forest::{DrawnInterval, forest_row};
 pub(crate) use likert::likert;
 pub(crate) use mixed_model::{deviations, model_shares};
-pub(crate) use ranking::ranking;
+pub use ranking::{Ranked, ranking};
 pub(crate) use roc::roc_curves;
 pub(crate) use scatter::{ScatterPanel, scatter};
 pub(crate) use shares::shares;

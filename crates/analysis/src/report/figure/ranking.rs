@@ -6,10 +6,10 @@ use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
 use crate::report::figure::{LEFT, RIGHT};
 
 /// A level, its worth in just noticeable differences, and the ends of its interval.
-pub(crate) type Ranked = (String, f64, Option<[f64; 2]>);
+pub type Ranked = (String, f64, Option<[f64; 2]>);
 
 /// A dot per level with its interval, the highest worth on top.
-pub(crate) fn ranking(language: Language, id: &str, caption: &str, levels: &[Ranked]) -> Figure {
+pub fn ranking(language: Language, id: &str, caption: &str, levels: &[Ranked]) -> Figure {
     let mut ranked: Vec<&Ranked> = levels.iter().collect();
     ranked.sort_by(|(_, one, _), (_, other, _)| other.total_cmp(one));
     let all = || {
