@@ -2,6 +2,8 @@
 
 #[path = "support/simulated.rs"]
 mod simulated;
+#[path = "report/mimicry.rs"]
+mod mimicry;
 #[path = "report/stimulus_measures.rs"]
 mod stimulus_measures;
 mod support;
