@@ -35,7 +35,8 @@ class Consent {
     const w = this.#words;
     const rate = Number(this.#pages.rateHz).toLocaleString(document.documentElement.lang);
     const paragraph = (text) => made("p", { textContent: text });
-    const agree = this.#button("mimicry-agree", w.mimicry_agree, "primary");
+    // Neither answer looks like the one that is wanted.
+    const agree = this.#button("mimicry-agree", w.mimicry_agree);
     const decline = this.#button("mimicry-decline", w.mimicry_decline);
     agree.onclick = () => this.#try();
     decline.onclick = () => this.#finish("declined", "off");

@@ -158,7 +158,7 @@ export class Tracker {
 
   #setBar(...parts) {
     this.#bar?.remove();
-    this.#bar = made("aside", { className: "mimicry-bar", role: "status" }, ...parts);
+    this.#bar = made("div", { className: "mimicry-bar", role: "status" }, ...parts);
     document.body.append(this.#bar);
   }
 

@@ -1,9 +1,9 @@
 //! The report of a simulated study: complete, the same each time, and true to what was planted.
 
-#[path = "support/simulated.rs"]
-mod simulated;
 #[path = "report/mimicry.rs"]
 mod mimicry;
+#[path = "support/simulated.rs"]
+mod simulated;
 #[path = "report/stimulus_measures.rs"]
 mod stimulus_measures;
 mod support;

@@ -20,12 +20,13 @@ impl ClipCourses {
     pub(crate) fn of(shape_names: &[String], weights: &[f64], rate_hz: f64) -> Self {
         let meant: Vec<Vec<&str>> = shape_names.iter().map(|name| arkit_shapes(name)).collect();
         let course = |shape: &&'static str| -> Option<(String, Vec<f64>)> {
-            let own: Vec<usize> =
-                (0..meant.len()).filter(|&k| meant[k].contains(shape)).collect();
+            let own: Vec<usize> = (0..meant.len()).filter(|&k| meant[k].contains(shape)).collect();
             let at = |row: &[f64]| own.iter().map(|&k| row[k]).max_by(f64::total_cmp);
             let rows = weights.chunks_exact(shape_names.len().max(1));
-            let course: Vec<f64> =
-                rows.map(at).map(|weight| weight.map(|w| (w * 1e6).round() / 1e6)).collect::<Option<_>>()?;
+            let course: Vec<f64> = rows
+                .map(at)
+                .map(|weight| weight.map(|w| (w * 1e6).round() / 1e6))
+                .collect::<Option<_>>()?;
             let moves = course.iter().any(|weight| *weight != course[0]);
             moves.then(|| ((*shape).to_owned(), course))
         };
@@ -44,10 +45,13 @@ mod tests {
         let found = ClipCourses::of(&names, &weights, 30.0);
         let shapes: Vec<(&str, &[f64])> =
             found.shapes.iter().map(|(name, course)| (name.as_str(), &course[..])).collect();
-        assert_eq!(shapes, [
-            ("jawOpen", &[0.0, 0.2, 0.123457][..]),
-            ("mouthSmileLeft", &[0.0, 0.4, 0.8][..]),
-            ("mouthSmileRight", &[0.0, 0.4, 0.8][..]),
-        ]);
+        assert_eq!(
+            shapes,
+            [
+                ("jawOpen", &[0.0, 0.2, 0.123457][..]),
+                ("mouthSmileLeft", &[0.0, 0.4, 0.8][..]),
+                ("mouthSmileRight", &[0.0, 0.4, 0.8][..]),
+            ]
+        );
     }
 }

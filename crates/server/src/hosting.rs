@@ -59,9 +59,8 @@ fn add_media(
         (format!("{MEDIA_PREFIX}{path}"), path.to_owned(), media_type(path).map(str::to_owned))
     });
     let of_mimicry = study.mimicry.iter().flat_map(|mimicry| {
-        let of = |file: MimicryFile| {
-            (file.key(), file.path(mimicry), Some(file.media_type.to_owned()))
-        };
+        let of =
+            |file: MimicryFile| (file.key(), file.path(mimicry), Some(file.media_type.to_owned()));
         MIMICRY_FILES.map(of)
     });
     for (key, path, media_type) in media.chain(of_mimicry) {

@@ -14,7 +14,6 @@ use crate::record::Record;
 use crate::sound_answers::are_of_sound_check;
 use crate::tracked_face::are_of_mimicry;
 
-
 /// Why an event cannot be a session's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Misfit {

@@ -23,7 +23,8 @@ fn text() -> String {
 }
 
 fn said(consent: &str, camera: &str) -> Input {
-    let answers = [("mimicry_consent", consent), ("mimicry_version", "2"), ("mimicry_camera", camera)];
+    let answers =
+        [("mimicry_consent", consent), ("mimicry_version", "2"), ("mimicry_camera", camera)];
     let answers: Answers = answers.map(|(name, word)| (name.to_owned(), json!(word))).into();
     Input::PageScripted(answers)
 }
@@ -62,10 +63,16 @@ fn the_consent_has_a_page_of_its_own_and_is_passed_by_its_answer_alone() {
     assert_eq!((shown.step.as_str(), shown.heading.as_str()), ("mimicry", "Your face"));
     assert_eq!(shown.text, ["We ask why.", "For a year."]);
     let pages: Value = serde_json::from_str(&shown.pages).unwrap();
-    assert_eq!((&pages["version"], &pages["rateHz"], &pages["needsFace"]), (&json!("2"), &json!(30.0), &json!(false)));
+    assert_eq!(
+        (&pages["version"], &pages["rateHz"], &pages["needsFace"]),
+        (&json!("2"), &json!(30.0), &json!(false))
+    );
     assert_eq!(pages["shapes"].as_array().unwrap().len(), 52);
     assert_eq!(pages["words"]["fr"]["mimicry_heading"], "Votre visage");
-    assert!(!shown.pages.contains("face_landmarker"), "where the researcher's files are is not sent");
+    assert!(
+        !shown.pages.contains("face_landmarker"),
+        "where the researcher's files are is not sent"
+    );
     page.send(Input::Next);
     assert!(matches!(page.view(), View::Scripted(_)), "the button of other pages leads nowhere");
     page.reload();
@@ -83,8 +90,14 @@ fn the_consent_has_a_page_of_its_own_and_is_passed_by_its_answer_alone() {
     assert!(!admission.is_done(&Record::default()));
     while page.act(&mut |_, _| json!(3)) {}
     for row in rows(&page).iter().filter(|row| row["trial_type"] == "trial") {
-        assert_eq!((&row["mimicry_consent"], &row["mimicry_camera"]), (&json!("declined"), &json!("off")));
-        assert_eq!((&row["mimicry_status"], &row["mimicry_pictures"]), (&Value::Null, &Value::Null));
+        assert_eq!(
+            (&row["mimicry_consent"], &row["mimicry_camera"]),
+            (&json!("declined"), &json!("off"))
+        );
+        assert_eq!(
+            (&row["mimicry_status"], &row["mimicry_pictures"]),
+            (&Value::Null, &Value::Null)
+        );
     }
 }
 
@@ -96,15 +109,26 @@ fn tracks_stay_in_the_events_and_rows_count_their_pictures() {
     page.send(Input::Play);
     page.mimicry = json!({ "status": "stopped", "clock": "", "model": "ab", "frames": [] });
     while page.act(&mut |_, _| json!(3)) {}
-    let played: Vec<&Value> =
-        page.stored.iter().map(|event| &event.body).filter(|body| body["type"] == "trial_played").collect();
+    let played: Vec<&Value> = page
+        .stored
+        .iter()
+        .map(|event| &event.body)
+        .filter(|body| body["type"] == "trial_played")
+        .collect();
     assert_eq!(played[0]["log"]["mimicry"], track(), "the event has all of it");
     let own: Vec<_> = rows(&page).into_iter().filter(|row| row["trial_type"] == "trial").collect();
     let [first, second] = own.as_slice() else { panic!("{} trials", own.len()) };
     assert_eq!((&first["mimicry_pictures"], &first["mimicry_faces"]), (&json!(4), &json!(3)));
-    assert_eq!((&first["mimicry_status"], &first["mimicry_clock"]), (&json!("tracked"), &json!("capture")));
-    assert_eq!((&second["mimicry_status"], &second["mimicry_pictures"]), (&json!("stopped"), &json!(0)));
-    let consent = rows(&page).into_iter().find(|row| row["response_id"] == "mimicry_consent").unwrap();
+    assert_eq!(
+        (&first["mimicry_status"], &first["mimicry_clock"]),
+        (&json!("tracked"), &json!("capture"))
+    );
+    assert_eq!(
+        (&second["mimicry_status"], &second["mimicry_pictures"]),
+        (&json!("stopped"), &json!(0))
+    );
+    let consent =
+        rows(&page).into_iter().find(|row| row["response_id"] == "mimicry_consent").unwrap();
     assert_eq!(consent["answer"], "agreed");
     // The record, which servers hold of many sessions, has no pictures.
     let record = Record::of(None, &page.stored);

@@ -9,8 +9,9 @@ use serde_json::Value;
 use crate::question::Question;
 use crate::study_file::{
     AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, JsonBlock,
-    LocalText, Look, MimicryPages, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule,
-    Section, Sequence, SoundPages, Study, Training, Translations, Triggers, questions_among,
+    LocalText, Look, MimicryPages, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
+    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
+    questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the

@@ -38,13 +38,12 @@ pub(super) fn curve(
         let text = language.fixed(*tick, lag.decimals);
         svg.text(lag.place(*tick), BOTTOM + 16.0, "small", Anchor::Middle, &text);
     }
-    let axis = language.pick(
-        "lag (s): the person after the clip",
-        "décalage (s) : la personne après l’extrait",
-    );
+    let axis = language
+        .pick("lag (s): the person after the clip", "décalage (s) : la personne après l’extrait");
     svg.text(RIGHT, BOTTOM + 36.0, "small", Anchor::End, axis);
     let band = |svg: &mut Svg, ends: &[[f64; 2]], colour: &str| {
-        let known = || lags.iter().zip(ends).filter(|(_, ends)| ends.iter().all(|own| own.is_finite()));
+        let known =
+            || lags.iter().zip(ends).filter(|(_, ends)| ends.iter().all(|own| own.is_finite()));
         let lower = known().map(|(at, ends)| [lag.place(*at), value.place(ends[0])]);
         let upper = known().map(|(at, ends)| [lag.place(*at), value.place(ends[1])]);
         let mut outline: Vec<[f64; 2]> = upper.collect();
@@ -58,15 +57,26 @@ pub(super) fn curve(
         band(&mut svg, interval, own.0);
     }
     let points = lags.iter().zip(&found.r).filter(|(_, r)| r.is_finite());
-    let points: Vec<[f64; 2]> =
-        points.map(|(at, r)| [lag.place(*at), value.place(*r)]).collect();
+    let points: Vec<[f64; 2]> = points.map(|(at, r)| [lag.place(*at), value.place(*r)]).collect();
     svg.coloured_path(&points, own);
     svg.circle(lag.place(found.lag_s), value.place(found.highest_r), 4.0, "mark");
     let critical = value.place(found.critical_r.clamp(low, high));
     svg.coloured_path(&[[LEFT, critical], [RIGHT, critical]], surrogates);
     let keys = [
-        (own, language.pick("mean over people, 95 % interval", "moyenne sur les personnes, intervalle à 95 %")),
-        (surrogates, language.pick("surrogates: middle 95 %, and limit of the highest value", "substituts : 95 % centraux, et limite de la plus haute valeur")),
+        (
+            own,
+            language.pick(
+                "mean over people, 95 % interval",
+                "moyenne sur les personnes, intervalle à 95 %",
+            ),
+        ),
+        (
+            surrogates,
+            language.pick(
+                "surrogates: middle 95 %, and limit of the highest value",
+                "substituts : 95 % centraux, et limite de la plus haute valeur",
+            ),
+        ),
     ];
     for (place, (line, text)) in keys.into_iter().enumerate() {
         let y = 16.0 + 16.0 * place as f64;
@@ -78,7 +88,8 @@ pub(super) fn curve(
         ["décalage (s)", "r", "de", "à", "substituts de", "substituts à"],
     );
     let mut data = DataTable::new(id, caption, columns);
-    let cell = |value: f64| if value.is_finite() { language.fixed(value, 3) } else { String::new() };
+    let cell =
+        |value: f64| if value.is_finite() { language.fixed(value, 3) } else { String::new() };
     for (place, at) in lags.iter().enumerate() {
         let interval = found.interval_95.as_ref().map_or([f64::NAN; 2], |own| own[place]);
         let [low, high] = found.surrogates_95[place];

@@ -191,9 +191,8 @@ fn used_plays(tables: &FaceTables, export: &Export) -> UsedPlays {
             given.people.len() - 1
         });
         let instants = instants(samples);
-        let course = |shape| {
-            resampled_course(&play.samples.of(shape), RATE_HZ, instants, LONGEST_GAP_S)
-        };
+        let course =
+            |shape| resampled_course(&play.samples.of(shape), RATE_HZ, instants, LONGEST_GAP_S);
         let track = (0..shapes().count()).map(course).collect();
         given.plays.push(CoupledPlay { person, clip, track });
     }

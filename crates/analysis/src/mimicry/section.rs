@@ -63,8 +63,11 @@ impl Writer<'_> {
             format!("How the faces of {people} people went with the faces that they saw, in {plays} plays: Pearson’s correlation of each shape’s weight in the clip with its score in the person’s face, at lags from −0.5 to 1.5 s, over shapes that the clip moves (gaze and blinks left out); the mean of Fisher’s z over shapes, then plays, then people (lagged cross-correlation: Boker et al. 2002). The test takes the highest value over all lags. In {count} surrogates (seed {seed}) {surrogates} (Moulder et al. 2018); p is corrected over lags, since the highest value is taken in the surrogates, too. A correlation says that faces went together in time; it says neither how strongly they moved nor why."),
             format!("Comment les visages de {people} personnes ont suivi ceux qu’elles voyaient, en {plays} lectures : corrélation de Pearson du poids de chaque forme dans l’extrait avec son score dans le visage de la personne, aux décalages de −0,5 à 1,5 s, sur les formes que l’extrait anime (regard et clignements exclus) ; moyenne du z de Fisher sur les formes, puis les lectures, puis les personnes (corrélation croisée décalée : Boker et coll. 2002). Le test prend la plus haute valeur sur tous les décalages. Dans {count} substituts (graine {seed}), {surrogates} (Moulder et coll. 2018) ; p est corrigé pour les décalages, puisque la plus haute valeur est prise aussi dans les substituts. Une corrélation dit que les visages allaient ensemble dans le temps ; elle ne dit ni l’ampleur des mouvements, ni leur cause."),
         )));
-        let (r, lag, p) =
-            (language.fixed(all.highest_r, 3), language.fixed(all.lag_s, 2), language.p(all.p_value));
+        let (r, lag, p) = (
+            language.fixed(all.highest_r, 3),
+            language.fixed(all.lag_s, 2),
+            language.p(all.p_value),
+        );
         let is_clear = all.p_value <= 0.05;
         let follows = all.lag_s > 0.0;
         self.blocks.push(Block::Reading(match (is_clear, follows) {
@@ -108,8 +111,24 @@ impl Writer<'_> {
             "Mimétisme selon les niveaux des facteurs, chacun testé à part",
         );
         let columns = language.pick(
-            ["factor", "level", "people", "plays", "highest r", "lag (s)", "p (corrected over lags)"],
-            ["facteur", "niveau", "personnes", "lectures", "r le plus haut", "décalage (s)", "p (corrigé pour les décalages)"],
+            [
+                "factor",
+                "level",
+                "people",
+                "plays",
+                "highest r",
+                "lag (s)",
+                "p (corrected over lags)",
+            ],
+            [
+                "facteur",
+                "niveau",
+                "personnes",
+                "lectures",
+                "r le plus haut",
+                "décalage (s)",
+                "p (corrigé pour les décalages)",
+            ],
         );
         let mut table = DataTable::new("mimicry-by-level", caption, columns);
         for own in &found.levels {
@@ -134,17 +153,16 @@ impl Writer<'_> {
             format!("Mean correlation by clip at a lag of {lag} s"),
             format!("Corrélation moyenne par extrait au décalage de {lag} s"),
         );
-        let columns = language.pick(
-            ["clip", "people", "r", "from", "to"],
-            ["extrait", "personnes", "r", "de", "à"],
-        );
+        let columns = language
+            .pick(["clip", "people", "r", "from", "to"], ["extrait", "personnes", "r", "de", "à"]);
         let mut table = DataTable::new("mimicry-by-clip", caption, columns);
         for own in &found.clips {
             let cell = |value: f64| match value.is_finite() {
                 true => language.fixed(value, 3),
                 false => String::new(),
             };
-            let [from, to] = own.interval_95.map_or([String::new(), String::new()], |it| it.map(cell));
+            let [from, to] =
+                own.interval_95.map_or([String::new(), String::new()], |it| it.map(cell));
             table.row([own.clip.clone(), own.people.to_string(), cell(own.r), from, to]);
         }
         table
@@ -155,10 +173,26 @@ impl LeftOut {
     /// Counts and reasons.
     fn words(&self, language: Language) -> String {
         let reasons = [
-            (self.excluded, "of people or trials that are left out", "de personnes ou d’essais laissés de côté"),
-            (self.unknown_clip, "of clips of which nothing is known in the table of courses", "d’extraits dont la table des cours ne dit rien"),
-            (self.moves_nothing, "of clips that move no shape with one of ARKit’s names", "d’extraits qui n’animent aucune forme aux noms d’ARKit"),
-            (self.too_little, "in which a face was seen for less than a second, or did not move", "où un visage a été vu moins d’une seconde, ou n’a pas bougé"),
+            (
+                self.excluded,
+                "of people or trials that are left out",
+                "de personnes ou d’essais laissés de côté",
+            ),
+            (
+                self.unknown_clip,
+                "of clips of which nothing is known in the table of courses",
+                "d’extraits dont la table des cours ne dit rien",
+            ),
+            (
+                self.moves_nothing,
+                "of clips that move no shape with one of ARKit’s names",
+                "d’extraits qui n’animent aucune forme aux noms d’ARKit",
+            ),
+            (
+                self.too_little,
+                "in which a face was seen for less than a second, or did not move",
+                "où un visage a été vu moins d’une seconde, ou n’a pas bougé",
+            ),
         ];
         let told: Vec<String> = reasons
             .into_iter()

@@ -90,11 +90,10 @@ pub fn analyze_with(
     if export.trials.is_empty() {
         return Err(export.flow.no_trial());
     }
-    let section::Sections { document, results, readings, replay } =
-        {
-            let beside = section::Beside { stimuli: stimuli.as_ref(), faces: faces.as_ref() };
-            section::write(&export, study, beside, preview.map(Preview), language)
-        };
+    let section::Sections { document, results, readings, replay } = {
+        let beside = section::Beside { stimuli: stimuli.as_ref(), faces: faces.as_ref() };
+        section::write(&export, study, beside, preview.map(Preview), language)
+    };
     let mut files = document_files(&document, language);
     files.push(ReportFile { path: "results.json".to_owned(), text: results });
     files.extend(replay);

@@ -89,7 +89,9 @@ pub enum StimuliError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum MimicryError {
     /// A column is absent.
-    #[error("column \"{column}\": there is no such column; give the table of {table} that `mimique export` writes")]
+    #[error(
+        "column \"{column}\": there is no such column; give the table of {table} that `mimique export` writes"
+    )]
     NoColumn {
         /// The table.
         table: &'static str,
@@ -97,7 +99,9 @@ pub enum MimicryError {
         column: String,
     },
     /// A cell of a column of numbers is none.
-    #[error("column \"{column}\": line {line}: \"{cell}\" is not a number; export the table of {table} again")]
+    #[error(
+        "column \"{column}\": line {line}: \"{cell}\" is not a number; export the table of {table} again"
+    )]
     NotANumber {
         /// The table.
         table: &'static str,
@@ -109,7 +113,9 @@ pub enum MimicryError {
         cell: String,
     },
     /// Times that run backwards, or a row without one.
-    #[error("column \"time_ms\": line {line}: no time, or none after that of the row before; export the table of {table} again")]
+    #[error(
+        "column \"time_ms\": line {line}: no time, or none after that of the row before; export the table of {table} again"
+    )]
     Time {
         /// The table.
         table: &'static str,

@@ -91,7 +91,8 @@ pub async fn courses(
 ) -> Result<(String, Vec<u8>), ExportError> {
     let study_id = choose(storage, study_id).await?;
     let sources = Sources::load(storage, &study_id).await?;
-    let mut bytes = csv::header_of(COURSE_COLUMNS.into_iter().chain(TRACKED_SHAPES).filter(is_moved))?;
+    let mut bytes =
+        csv::header_of(COURSE_COLUMNS.into_iter().chain(TRACKED_SHAPES).filter(is_moved))?;
     let mut told = BTreeSet::new();
     for version in &sources.versions {
         for measures in &version.measures {

@@ -13,9 +13,7 @@ use serde::Deserialize;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::http::headers::{
-    Embeddable, PERMISSIONS_POLICY, WITH_CAMERA, content_security_policy,
-};
+use crate::http::headers::{Embeddable, PERMISSIONS_POLICY, WITH_CAMERA, content_security_policy};
 use crate::http::language::accepted;
 use crate::state::App;
 use mimique_study::Multilingual as _;

@@ -98,8 +98,7 @@ fn make(
         Some((Some(tracks), Some(courses))) => Some(MeasuredFaces { tracks, courses }),
         _ => None,
     };
-    let options =
-        ReportOptions { stimuli: stimuli.as_ref(), faces, preview: Some(preview) };
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview: Some(preview) };
     analyze_with(&table, study, language, options).map_err(no_report)
 }
 

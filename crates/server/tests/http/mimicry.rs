@@ -51,7 +51,10 @@ pub async fn the_camera_is_for_pages_that_measure_alone(plain: &TestServer) {
         assert_eq!(answer.header("content-type"), media_type);
         assert_eq!(answer.text(), study::pack());
     }
-    assert_eq!(server.get(&format!("/packs/{hash}")).await.header("content-type"), "application/octet-stream");
+    assert_eq!(
+        server.get(&format!("/packs/{hash}")).await.header("content-type"),
+        "application/octet-stream"
+    );
     assert_eq!(server.get(&format!("/packs/{hash}.html")).await.status, StatusCode::NOT_FOUND);
     let bundle = server.get("/api/studies/demo").await;
     let told: Value = bundle.json();
@@ -66,7 +69,8 @@ pub async fn tracks_are_exported_and_deleted_with_their_session(plain: &TestServ
     for nonce in [1, 2] {
         let started = server.start_in("demo", nonce).await;
         let plan = Plan::new(study.study().projection(), started.clone()).unwrap();
-        let step = plan.steps.iter().find(|step| step.trial().is_some_and(|own| !own.training)).unwrap();
+        let step =
+            plan.steps.iter().find(|step| step.trial().is_some_and(|own| !own.training)).unwrap();
         let clip = &step.trial().unwrap().clip;
         let scores = |first: u32| [vec![first], vec![0; TRACKED_SHAPES.len() - 1]].concat();
         let frame = |at_ms: f64, first: u32| -> Vec<f64> {
@@ -74,7 +78,8 @@ pub async fn tracks_are_exported_and_deleted_with_their_session(plain: &TestServ
         };
         let track = json!({ "status": "tracked", "clock": "capture", "model": "ab",
             "frames": [frame(1.25, 500), [34.0], frame(68.0, 1000)] });
-        let log = |aborted: Value| json!({ "provenance": "p", "mimicry": track, "aborted": aborted });
+        let log =
+            |aborted: Value| json!({ "provenance": "p", "mimicry": track, "aborted": aborted });
         let bodies = [
             json!({ "type": "opened", "client": {}, "language": "en" }),
             json!({ "type": "trial_started", "step": step.id, "clip": clip }),
@@ -91,11 +96,16 @@ pub async fn tracks_are_exported_and_deleted_with_their_session(plain: &TestServ
             server.withdrawn(&started.session, &started.withdrawal_code).await;
         }
     }
-    let exported = export(&server.storage, Some("demo"), Format::Tracks, Options::default()).await.unwrap();
+    let exported =
+        export(&server.storage, Some("demo"), Format::Tracks, Options::default()).await.unwrap();
     assert_eq!(exported.files[0].0, "demo_tracks.csv");
     let rows: Vec<BTreeMap<String, String>> =
         csv::Reader::from_reader(&*exported.files[0].1).deserialize().map(Result::unwrap).collect();
-    assert_eq!((exported.participants, exported.rows, rows.len()), (1, 6, 6), "who withdrew is gone, what fits no trial is out");
+    assert_eq!(
+        (exported.participants, exported.rows, rows.len()),
+        (1, 6, 6),
+        "who withdrew is gone, what fits no trial is out"
+    );
     let cells = |name: &str| rows.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
     assert_eq!(cells("participant_id"), ["p0002"; 6]);
     assert_eq!(cells("play"), ["1", "1", "1", "2", "2", "2"]);

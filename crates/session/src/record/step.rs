@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use mimique_study::Answers;
 
-use crate::tracked_face;
 use crate::event::{Calibrated, Client, LevelShown, PlayLog, ShownBeside};
+use crate::tracked_face;
 
 /// The page or trial on the screen.
 #[derive(Debug, Clone, PartialEq, Default)]

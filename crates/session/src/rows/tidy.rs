@@ -18,8 +18,9 @@ use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
 use crate::tracked_face::MIMICRY_STEP;
 use crate::wire::SessionStarted;
 use mimique_study::columns::{
-    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, MIMICRY_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SCALING_COLUMNS,
-    SOUND_COLUMNS, TRACE_COLUMN, TRAJECTORIES_COLUMN, TRIGGER_COLUMN, WEIGHTS_EXPECTED_COLUMN,
+    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, MIMICRY_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS,
+    SCALING_COLUMNS, SOUND_COLUMNS, TRACE_COLUMN, TRAJECTORIES_COLUMN, TRIGGER_COLUMN,
+    WEIGHTS_EXPECTED_COLUMN,
 };
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,

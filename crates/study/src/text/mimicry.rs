@@ -7,7 +7,11 @@ use super::sound::row_words;
 
 /// Name, English, French. The pictures per second stand for the word in braces.
 pub(super) const MIMICRY: [[&str; 3]; 24] = [
-    ["mimicry_sent_heading", "What is sent, and what is not", "Ce qui est envoyé, et ce qui ne l’est pas"],
+    [
+        "mimicry_sent_heading",
+        "What is sent, and what is not",
+        "Ce qui est envoyé, et ce qui ne l’est pas",
+    ],
     [
         "mimicry_sent",
         "While a clip plays, this page measures your face in your own browser, up to {rate} times per second: 52 numbers, which say how far movements such as opening the jaw or raising a brow are made, and when. These numbers are sent to the researchers and kept with your answers.",
@@ -25,24 +29,76 @@ pub(super) const MIMICRY: [[&str; 3]; 24] = [
     ],
     ["mimicry_agree", "I agree: switch the camera on", "J’accepte : allumer la caméra"],
     ["mimicry_decline", "I do not agree: go on without", "Je refuse : continuer sans"],
-    ["mimicry_asking", "Your browser asks whether this page may use the camera.", "Votre navigateur demande si cette page peut utiliser la caméra."],
-    ["mimicry_loading", "What measures the face is being loaded.", "Ce qui mesure le visage est en cours de chargement."],
-    ["mimicry_looking", "No face is seen yet. Sit in front of the camera, with light on your face.", "Aucun visage n’est encore vu. Placez-vous devant la caméra, le visage éclairé."],
-    ["mimicry_seen", "Your face is seen. You can go on.", "Votre visage est vu. Vous pouvez continuer."],
-    ["mimicry_own", "Your camera. This picture stays on your device.", "Votre caméra. Cette image reste sur votre appareil."],
+    [
+        "mimicry_asking",
+        "Your browser asks whether this page may use the camera.",
+        "Votre navigateur demande si cette page peut utiliser la caméra.",
+    ],
+    [
+        "mimicry_loading",
+        "What measures the face is being loaded.",
+        "Ce qui mesure le visage est en cours de chargement.",
+    ],
+    [
+        "mimicry_looking",
+        "No face is seen yet. Sit in front of the camera, with light on your face.",
+        "Aucun visage n’est encore vu. Placez-vous devant la caméra, le visage éclairé.",
+    ],
+    [
+        "mimicry_seen",
+        "Your face is seen. You can go on.",
+        "Votre visage est vu. Vous pouvez continuer.",
+    ],
+    [
+        "mimicry_own",
+        "Your camera. This picture stays on your device.",
+        "Votre caméra. Cette image reste sur votre appareil.",
+    ],
     ["mimicry_next", "Go on", "Continuer"],
     ["mimicry_without", "Go on without the camera", "Continuer sans la caméra"],
     ["mimicry_again", "Try again", "Réessayer"],
-    ["mimicry_refused", "The camera may not be used. Allow it in your browser, or go on without.", "La caméra ne peut pas être utilisée. Autorisez-la dans votre navigateur, ou continuez sans."],
-    ["mimicry_no_camera", "No camera was found. Connect one, or go on without.", "Aucune caméra n’a été trouvée. Branchez-en une, ou continuez sans."],
-    ["mimicry_failed", "What measures the face does not work in this browser. You can try again, or go on without.", "Ce qui mesure le visage ne fonctionne pas dans ce navigateur. Vous pouvez réessayer, ou continuer sans."],
-    ["mimicry_insecure", "This browser lets only secure pages (https) use the camera. You can go on without.", "Ce navigateur n’autorise la caméra qu’aux pages sécurisées (https). Vous pouvez continuer sans."],
-    ["mimicry_bar", "The camera is on. While a clip plays, movements of your face are measured; no picture is sent.", "La caméra est allumée. Pendant un extrait, les mouvements de votre visage sont mesurés ; aucune image n’est envoyée."],
+    [
+        "mimicry_refused",
+        "The camera may not be used. Allow it in your browser, or go on without.",
+        "La caméra ne peut pas être utilisée. Autorisez-la dans votre navigateur, ou continuez sans.",
+    ],
+    [
+        "mimicry_no_camera",
+        "No camera was found. Connect one, or go on without.",
+        "Aucune caméra n’a été trouvée. Branchez-en une, ou continuez sans.",
+    ],
+    [
+        "mimicry_failed",
+        "What measures the face does not work in this browser. You can try again, or go on without.",
+        "Ce qui mesure le visage ne fonctionne pas dans ce navigateur. Vous pouvez réessayer, ou continuer sans.",
+    ],
+    [
+        "mimicry_insecure",
+        "This browser lets only secure pages (https) use the camera. You can go on without.",
+        "Ce navigateur n’autorise la caméra qu’aux pages sécurisées (https). Vous pouvez continuer sans.",
+    ],
+    [
+        "mimicry_bar",
+        "The camera is on. While a clip plays, movements of your face are measured; no picture is sent.",
+        "La caméra est allumée. Pendant un extrait, les mouvements de votre visage sont mesurés ; aucune image n’est envoyée.",
+    ],
     ["mimicry_stop", "Switch the camera off", "Éteindre la caméra"],
-    ["mimicry_stopped", "The camera is off. Nothing more of your face is measured. What was measured stays with your answers; if you withdraw from the study it is deleted.", "La caméra est éteinte. Plus rien de votre visage n’est mesuré. Ce qui l’a été reste avec vos réponses ; si vous vous retirez de l’étude, c’est supprimé."],
+    [
+        "mimicry_stopped",
+        "The camera is off. Nothing more of your face is measured. What was measured stays with your answers; if you withdraw from the study it is deleted.",
+        "La caméra est éteinte. Plus rien de votre visage n’est mesuré. Ce qui l’a été reste avec vos réponses ; si vous vous retirez de l’étude, c’est supprimé.",
+    ],
     ["mimicry_close", "Close", "Fermer"],
-    ["mimicry_resuming", "The camera is being switched on again.", "La caméra est en train de se rallumer."],
-    ["mimicry_lost", "The camera is off: it is not found, or may not be used any more. The study goes on without.", "La caméra est éteinte : elle est introuvable, ou ne peut plus être utilisée. L’étude continue sans."],
+    [
+        "mimicry_resuming",
+        "The camera is being switched on again.",
+        "La caméra est en train de se rallumer.",
+    ],
+    [
+        "mimicry_lost",
+        "The camera is off: it is not found, or may not be used any more. The study goes on without.",
+        "La caméra est éteinte : elle est introuvable, ou ne peut plus être utilisée. L’étude continue sans.",
+    ],
 ];
 
 /// What the pages say of it in a language, by name: the study's own words (`translations`), else French or English.

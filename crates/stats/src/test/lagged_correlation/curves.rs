@@ -80,7 +80,8 @@ pub fn resampled_course(
 /// The curve of a play; none where no lag has a correlation.
 pub(super) fn curve(shown: &Courses, track: &Courses, window: &LagWindow) -> Option<Curve> {
     let of = |lag: isize| {
-        let found = shown.iter().zip(track).filter_map(|(x, y)| correlation(x, y, lag, window.least));
+        let found =
+            shown.iter().zip(track).filter_map(|(x, y)| correlation(x, y, lag, window.least));
         let (sum, count) = found.fold((0.0, 0.0), |(sum, count), r| {
             (sum + libm::atanh(r.clamp(-HIGHEST_R, HIGHEST_R)), count + 1.0)
         });

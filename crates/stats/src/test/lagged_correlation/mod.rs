@@ -38,8 +38,8 @@ use crate::distributions::tail::t_quantile_upper;
 use crate::numerics::largest::require_permutations;
 use crate::refusal::Refusal;
 use crate::summary::describe::{median, quantile_sorted};
-pub use curves::{LagWindow, resampled_course};
 use curves::{Curve, curve, highest, mean_curve};
+pub use curves::{LagWindow, resampled_course};
 use surrogates::surrogate_curves;
 
 /// Courses by shape, each with a value per instant; a gap is `NaN`. A shape without a course has an empty list.
@@ -168,7 +168,8 @@ pub fn lagged_correlation(
     let group = mean_curve(people.iter().map(|own| &own.curve), window.lags());
     let Some((place, highest_z)) = highest(&group) else { return Ok(None) };
     let drawn = surrogate_curves(given, &people, &options);
-    let maxima: Vec<f64> = drawn.iter().map(|own| highest(own).map_or(f64::NAN, |it| it.1)).collect();
+    let maxima: Vec<f64> =
+        drawn.iter().map(|own| highest(own).map_or(f64::NAN, |it| it.1)).collect();
     let reached = maxima.iter().filter(|own| **own >= highest_z - 1e-12).count();
     let mut sorted: Vec<f64> = maxima.into_iter().filter(|own| own.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);

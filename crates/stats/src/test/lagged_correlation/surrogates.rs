@@ -48,11 +48,10 @@ fn dealt(
     }
     let mut clips: Vec<usize> = vec![0; places.len()];
     places.iter().for_each(|(clip, place)| clips[*place] = *clip);
-    let against = |play: &CoupledPlay, clip: &usize| curve(&given.clips[*clip], &play.track, window);
-    let curves: Vec<Vec<Option<Curve>>> = plays
-        .iter()
-        .map(|play| clips.iter().map(|clip| against(play, clip)).collect())
-        .collect();
+    let against =
+        |play: &CoupledPlay, clip: &usize| curve(&given.clips[*clip], &play.track, window);
+    let curves: Vec<Vec<Option<Curve>>> =
+        plays.iter().map(|play| clips.iter().map(|clip| against(play, clip)).collect()).collect();
     let mut deal: Vec<usize> = plays.iter().map(|play| places[&play.clip]).collect();
     let count = deal.len();
     let draw = |_| {

@@ -50,9 +50,10 @@ fn tested(given: &Couplings, options: LaggedCorrelationOptions) -> LaggedCorrela
 
 #[test]
 fn a_planted_lag_is_found_whatever_the_gain_and_in_spite_of_noise_and_gaps() {
-    for (seed, (lag, gain)) in [(12, 0.4), (24, 0.4), (0, 0.4), (18, 0.15)].into_iter().enumerate() {
+    for (seed, (lag, gain)) in [(12, 0.4), (24, 0.4), (0, 0.4), (18, 0.15)].into_iter().enumerate()
+    {
         let mut random = Random::new(seed as u64);
-        let mut given = planted(16, 8, lag, gain, &mut random);
+        let mut given = planted(12, 6, lag, gain, &mut random);
         // A fifth of the instants is not measured, whole stretches of it.
         for (number, play) in given.plays.iter_mut().enumerate() {
             let from = (7 * number) % (INSTANTS - 30);
@@ -60,9 +61,13 @@ fn a_planted_lag_is_found_whatever_the_gain_and_in_spite_of_noise_and_gaps() {
         }
         for kind in [Surrogates::OtherClips, Surrogates::Shifted] {
             let found = tested(&given, options(kind, 199, 1));
-            assert!((found.lag_s - lag as f64 / RATE_HZ).abs() <= 1.5 / RATE_HZ, "{lag}: {}", found.lag_s);
+            assert!(
+                (found.lag_s - lag as f64 / RATE_HZ).abs() <= 1.5 / RATE_HZ,
+                "{lag}: {}",
+                found.lag_s
+            );
             assert!(found.p_value <= 0.01 && found.highest_r > found.critical_r, "{found:?}");
-            assert_eq!((found.participants, found.n, found.dropped), (16, 128, 0));
+            assert_eq!((found.participants, found.n, found.dropped), (12, 72, 0));
             let place = found.lags_s.iter().position(|own| *own == found.lag_s).unwrap();
             let [low, high] = found.interval_95.as_ref().unwrap()[place];
             assert!(low < found.highest_r && found.highest_r < high && low > 0.0);
@@ -83,10 +88,10 @@ fn a_planted_lag_is_found_whatever_the_gain_and_in_spite_of_noise_and_gaps() {
 #[test]
 fn without_coupling_p_is_uniform() {
     for (kind, allowed) in [(Surrogates::OtherClips, 1.36), (Surrogates::Shifted, 1.63)] {
-        const SEEDS: usize = 300;
+        const SEEDS: usize = 200;
         let p: Vec<f64> = (0..SEEDS as u64)
             .map(|seed| {
-                let given = planted(4, 5, 0, 0.0, &mut Random::new(1000 + seed));
+                let given = planted(3, 4, 0, 0.0, &mut Random::new(1000 + seed));
                 tested(&given, options(kind, 99, seed)).p_value
             })
             .collect();
@@ -100,7 +105,7 @@ fn without_coupling_p_is_uniform() {
         let distance = sorted.iter().enumerate().map(apart).fold(0.0, f64::max);
         assert!(distance * (SEEDS as f64).sqrt() < allowed, "{kind:?}: {distance}");
         let positive = p.iter().filter(|p| **p <= 0.05).count();
-        assert!((5..=27).contains(&positive), "{kind:?}: {positive} of {SEEDS} at 0.05");
+        assert!((2..=20).contains(&positive), "{kind:?}: {positive} of {SEEDS} at 0.05");
     }
 }
 
@@ -113,25 +118,34 @@ fn what_people_do_in_every_play_alike_is_no_coupling() {
         (0..INSTANTS).map(at).collect()
     };
     let (mut positive, mut shifted) = (0, 0);
-    for seed in 0..40 {
+    for seed in 0..20 {
         let random = &mut Random::new(seed);
-        let mut given = planted(6, 6, 0, 0.0, random);
+        let mut given = planted(5, 5, 0, 0.0, random);
         given.clips.iter_mut().flatten().for_each(|course| *course = bump(2.0, random));
-        given.plays.iter_mut().flat_map(|play| &mut play.track).for_each(|course| *course = bump(1.5, random));
+        given
+            .plays
+            .iter_mut()
+            .flat_map(|play| &mut play.track)
+            .for_each(|course| *course = bump(1.5, random));
         let found = tested(&given, options(Surrogates::OtherClips, 99, seed));
         assert!(found.highest_r > 0.4, "the curves are high all the same");
         positive += usize::from(found.p_value <= 0.05);
-        shifted += usize::from(tested(&given, options(Surrogates::Shifted, 99, seed)).p_value <= 0.05);
+        shifted +=
+            usize::from(tested(&given, options(Surrogates::Shifted, 99, seed)).p_value <= 0.05);
     }
-    assert!(positive <= 6, "{positive} of 40");
-    assert_eq!(shifted, 40, "a turned course does not share the moment");
+    assert!(positive <= 4, "{positive} of 20");
+    assert_eq!(shifted, 20, "a turned course does not share the moment");
 }
 
 #[test]
 fn what_has_no_curve_is_counted_and_left_out() {
     let mut given = planted(3, 4, 6, 0.5, &mut Random::new(9));
     let whole = tested(&given, options(Surrogates::OtherClips, 99, 5));
-    assert_eq!(whole, tested(&given, options(Surrogates::OtherClips, 99, 5)), "the same bits again");
+    assert_eq!(
+        whole,
+        tested(&given, options(Surrogates::OtherClips, 99, 5)),
+        "the same bits again"
+    );
     // One play without a face, one of a face that never moves, and a person with neither.
     given.plays[0].track.iter_mut().for_each(|course| course.fill(f64::NAN));
     given.plays[1].track.iter_mut().for_each(|course| course.fill(0.25));
