@@ -93,7 +93,7 @@ class Consent {
       tracker.showBar();
       this.#answer("agreed", seen ? "seen" : "not_seen", tracker);
     };
-    const own = made("figure", { className: "mimicry-own" }, tracker.video, made("figcaption", { textContent: w.mimicry_own }));
+    const own = made("figure", { className: "mimicry-own" }, tracker.ownPicture(), made("figcaption", { textContent: w.mimicry_own }));
     this.#show(own, row(next, this.#without("off")));
     this.#say(w.mimicry_looking);
     next.focus();

@@ -85,9 +85,10 @@ export class Tracker {
     this.#next();
   }
 
-  /// The participant's own picture, for the page on which the camera is tried.
-  get video() {
-    return this.#video;
+  /// The participant's own picture, for the page on which the camera is tried. What is measured is another element, which
+  /// never stands on a page: browsers pause a video that is taken off one.
+  ownPicture() {
+    return Object.assign(document.createElement("video"), { srcObject: this.#stream, muted: true, playsInline: true, autoplay: true });
   }
 
   /// Calls back with whether each measured picture has a face.

@@ -2,12 +2,13 @@
 // is served and looked at. MIMIQUE_UPDATE_GOLDEN=1 writes the pictures anew; look at them before you keep them.
 
 import assert from "node:assert/strict";
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, statSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { test } from "node:test";
-import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { executable, open, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
+import { taken } from "./lib/guide_picture.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, root, serve } from "./lib/server.mjs";
 
@@ -15,8 +16,6 @@ const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
 const files = ["ict-facekit/ict-facekit.glb", "animface/JawMoCap.c3d", "animface/markers-ict-facekit.json"];
 const absent = files.map((file) => join(data, file)).find((file) => !existsSync(file));
 const unable = skip(!executable ? "Chromium not found" : absent && `real data not found: ${absent}`);
-const pictures = join(root, "docs/guide/pictures");
-const MOST_BYTES = 150_000;
 
 /** The study of the page, made by the page's command: its file. */
 function pageStudy() {
@@ -27,25 +26,6 @@ function pageStudy() {
   const command = /^\$ mimique (new jaw .*)$/m.exec(page)[1];
   mimique(command.split(" "), { cwd: folder });
   return join(folder, "jaw/study.json");
-}
-
-/** Takes a picture, and sees that the page's is of the same size and small. */
-async function taken(page, name) {
-  const update = process.env.MIMIQUE_UPDATE_GOLDEN === "1";
-  const there = join(update ? pictures : screenshotFolder("guide"), name);
-  if (update) mkdirSync(pictures, { recursive: true });
-  await page.screenshot({ path: there, type: "jpeg", quality: 80 });
-  const kept = join(pictures, name);
-  assert.ok(statSync(kept).size < MOST_BYTES, `${name} has ${statSync(kept).size} bytes`);
-  assert.deepEqual(size(readFileSync(kept)), size(readFileSync(there)), name);
-}
-
-/** Height and width of a JPEG: those of its frame header. */
-function size(bytes) {
-  for (let at = 2; at < bytes.length; at += 2 + bytes.readUInt16BE(at + 2)) {
-    if ([0xc0, 0xc1, 0xc2].includes(bytes[at + 1])) return [bytes.readUInt16BE(at + 5), bytes.readUInt16BE(at + 7)];
-  }
-  throw new Error("no JPEG");
 }
 
 test("guide: the pictures of the first study", { skip: unable, timeout: 600_000 }, async () => {
