@@ -30,11 +30,15 @@ fn study() -> Study {
 fn courses(study: &Study) -> BTreeMap<String, Vec<Vec<f64>>> {
     let mut random = Random::new(3);
     let mut course = || -> Vec<f64> {
-        let waves: Vec<[f64; 2]> =
-            (0..4).map(|_| [0.3 + 1.2 * random.uniform(), 6.28 * random.uniform()]).collect();
+        let waves: Vec<[f64; 2]> = (0..4)
+            .map(|_| [0.3 + 1.2 * random.uniform(), std::f64::consts::TAU * random.uniform()])
+            .collect();
         let at = |frame: usize| {
             let time = frame as f64 / RATE_HZ;
-            0.5 + waves.iter().map(|[hz, phase]| (6.28 * hz * time + phase).sin()).sum::<f64>()
+            0.5 + waves
+                .iter()
+                .map(|[hz, phase]| (std::f64::consts::TAU * hz * time + phase).sin())
+                .sum::<f64>()
                 / 8.0
         };
         (0..FRAMES).map(at).collect()

@@ -1,7 +1,5 @@
 //! Courses at one rate, and their correlation by lag.
 
-use super::Courses;
-
 /// Fisher's z by lag; `NaN` where there is none.
 pub(super) type Curve = Vec<f64>;
 
@@ -78,7 +76,7 @@ pub fn resampled_course(
 }
 
 /// The curve of a play; none where no lag has a correlation.
-pub(super) fn curve(shown: &Courses, track: &Courses, window: &LagWindow) -> Option<Curve> {
+pub(super) fn curve(shown: &[Vec<f64>], track: &[Vec<f64>], window: &LagWindow) -> Option<Curve> {
     let of = |lag: isize| {
         let found =
             shown.iter().zip(track).filter_map(|(x, y)| correlation(x, y, lag, window.least));
@@ -129,7 +127,7 @@ pub(super) fn mean_curve<'c>(curves: impl Iterator<Item = &'c Curve>, lags: usiz
 }
 
 /// Place and value of the highest point; none of a curve without any.
-pub(super) fn highest(curve: &Curve) -> Option<(usize, f64)> {
+pub(super) fn highest(curve: &[f64]) -> Option<(usize, f64)> {
     let points = curve.iter().copied().enumerate().filter(|(_, z)| z.is_finite());
     points.max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -230,7 +230,7 @@ fn people_of(given: &Couplings, curves: &[Option<Curve>]) -> Vec<PersonPlays> {
 }
 
 /// 95 % intervals by t over people at each lag, of r; none of one person.
-fn intervals(people: &[PersonPlays], group: &Curve) -> Option<Vec<[f64; 2]>> {
+fn intervals(people: &[PersonPlays], group: &[f64]) -> Option<Vec<[f64; 2]>> {
     if people.len() < 2 {
         return None;
     }

@@ -94,7 +94,7 @@ fn offsets(length: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Courses turned round by so many instants.
-fn round(track: &Courses, by: usize) -> Courses {
+fn round(track: &[Vec<f64>], by: usize) -> Courses {
     let turned = |course: &Vec<f64>| {
         let mut course = course.clone();
         if !course.is_empty() {
