@@ -193,9 +193,10 @@ export async function playClips(clips, inTurn) {
   try {
     const told = (await triggers)?.play({ clip, beside: others[0]?.clip ?? null, ...(others.length > 1 && { panel: placed.map((each) => each.clip) }) });
     const lines = followed();
-    const each = lines ? { frame: (now, ms) => (told?.frame(now, ms), lines.frame(now)), end: (now) => told?.end(now) } : told;
+    const own = (await face)?.play();
+    const each = { frame: (now, ms) => (told?.frame(now, ms), lines?.frame(now), own?.frame(now)), end: (now) => told?.end(now) };
     const log = onPageClock(await here.play(clip, { beside, inTurn, heard: true, told: each }));
-    return JSON.stringify({ ...log, triggers: told?.sent(), traces: lines?.courses(log.end_ms - log.onset_ms) });
+    return JSON.stringify({ ...log, triggers: told?.sent(), traces: lines?.courses(log.end_ms - log.onset_ms), mimicry: own?.log() });
   } finally {
     seen.disconnect();
   }
@@ -273,14 +274,24 @@ function thousandth(ms) {
   return Math.round(ms * 1000) / 1000;
 }
 
-/** Gives the sound check, or the captions below a clip, their place: scripts of studies with sound alone. */
+/** Gives a page whose controls are a script's, the sound check or the consent to measuring the face, or the captions
+    below a clip, their place: scripts that only studies load that have such pages. */
 export function attachSound(node) {
-  const check = node.matches("input");
-  import(`../sound/${check ? "check" : "sound"}.js`).then(
-    ({ begin, attachCaptions }) => (check ? begin : attachCaptions)(node),
+  const { script } = node.dataset;
+  import(script ? `../${script}/check.js` : "../sound/sound.js").then(
+    ({ begin, attachCaptions }) => (script === "mimicry" ? (face = begin(node)) : (begin ?? attachCaptions)(node)),
     // What did not arrive is asked for again.
     () => setTimeout(() => node.isConnected && attachSound(node), 2000),
   );
+}
+
+// What measures the participant's face: a promise of the tracker of those who have agreed.
+let face;
+
+/** Goes on measuring after a reload where the camera was on; `pages`: JSON of study::MimicryPages, `camera`: what became of
+    it, as the consent's page found it. */
+export function openMimicry(pages, camera) {
+  if (camera.endsWith("seen")) face ??= import("../mimicry/tracker.js").then(({ resumed }) => resumed(JSON.parse(pages)), () => null);
 }
 
 /** The next level of an adaptive block: scripts of studies with such a block alone. What did not arrive is asked for

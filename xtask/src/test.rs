@@ -46,8 +46,8 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// Browser tests that hold the display's frames, a clip's sound or a press against a clock, and those that go through the
 /// longest studies: nothing runs beside them.
-const TIMED: [&str; 8] =
-    ["conduct", "keys", "pairs", "sound", "studio", "study", "together", "triggers"];
+const TIMED: [&str; 9] =
+    ["conduct", "keys", "mimicry", "pairs", "sound", "studio", "study", "together", "triggers"];
 
 /// Installs what tests need; the Python environment, where there can be one.
 fn needed() -> Result<Option<PathBuf>> {

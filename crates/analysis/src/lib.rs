@@ -35,6 +35,7 @@ mod choices;
 mod faces;
 mod hypothesis;
 mod language;
+mod mimicry;
 mod power;
 mod preregistration;
 mod report;
@@ -63,11 +64,11 @@ pub use power::{
     power_runs, precision_csv, precision_markdown,
 };
 pub use preregistration::{Preregistration, preregistration};
-pub use report::{Report, ReportFile, ReportOptions, analyze, analyze_with};
+pub use report::{MeasuredFaces, Report, ReportFile, ReportOptions, analyze, analyze_with};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates,
     Interaction, NumberAnswer, PairChoices, Parameters, ParametersError, PerceivedScale, Rating,
     Recognition, SimulatedSession, Simulation, Template, TemplatePart, TemplatePeople, Times,
 };
-pub use trials::error::{ExportError, StimuliError};
+pub use trials::error::{ExportError, MimicryError, StimuliError};
 pub use trials::reason::Reason;

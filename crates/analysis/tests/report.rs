@@ -1,5 +1,7 @@
 //! The report of a simulated study: complete, the same each time, and true to what was planted.
 
+#[path = "report/mimicry.rs"]
+mod mimicry;
 #[path = "support/simulated.rs"]
 mod simulated;
 #[path = "report/stimulus_measures.rs"]

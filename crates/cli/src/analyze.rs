@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use mimique_analysis::{ExportError, Language, ReportOptions, analyze_with};
+use mimique_analysis::{ExportError, Language, MeasuredFaces, ReportOptions, analyze_with};
 use mimique_stats::Table;
 use mimique_study::Study;
 use mimique_study::text::{counted, counted_as};
@@ -25,6 +25,12 @@ pub struct Args {
     /// answers are held against them
     #[arg(long, value_name = "FILE.csv")]
     stimuli: Option<PathBuf>,
+    /// Participants' faces, as `mimique export --format tracks` writes them, in studies that measure them
+    #[arg(long, value_name = "FILE.csv", requires = "courses")]
+    tracks: Option<PathBuf>,
+    /// The courses of the clips that faces are held against, as `mimique export --courses` writes them
+    #[arg(long, value_name = "FILE.csv", requires = "tracks")]
+    courses: Option<PathBuf>,
     /// Address of the study's preview, such as http://127.0.0.1:8080/preview/demo: in the figures what stands for one clip
     /// leads to that clip there
     #[arg(long, value_name = "URL", value_parser = preview_address)]
@@ -71,10 +77,21 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         Some(path) => Some(read_table(path).with_context(|| place(path))?),
         None => None,
     };
-    let options = ReportOptions { stimuli: stimuli.as_ref(), preview: args.preview_url.as_deref() };
+    let read = |path: &PathBuf| read_table(path).with_context(|| place(path));
+    let tracks = args.tracks.as_ref().map(read).transpose()?;
+    let courses = args.courses.as_ref().map(read).transpose()?;
+    let faces = tracks.as_ref().zip(courses.as_ref());
+    let faces = faces.map(|(tracks, courses)| MeasuredFaces { tracks, courses });
+    let preview = args.preview_url.as_deref();
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview };
     let report = analyze_with(&table, &study, args.language, options).map_err(|error| {
-        let of_stimuli = matches!(error, ExportError::Stimuli(_));
-        let file = args.stimuli.as_ref().filter(|_| of_stimuli).unwrap_or(&args.export);
+        let file = match &error {
+            ExportError::Stimuli(_) => args.stimuli.as_ref(),
+            ExportError::Mimicry(fault) if fault.table() == "tracks" => args.tracks.as_ref(),
+            ExportError::Mimicry(_) => args.courses.as_ref(),
+            _ => None,
+        };
+        let file = file.unwrap_or(&args.export);
         anyhow::Error::from(error).context(place(file))
     })?;
     let written =

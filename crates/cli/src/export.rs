@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use mimique_server::export::{Cells, Export, Format, Options, Part, stimuli};
+use mimique_server::export::{Cells, Export, Format, Options, Part, courses, stimuli};
 use mimique_storage::Storage;
 
 use crate::output;
@@ -16,7 +16,8 @@ pub struct Args {
     #[arg(long, default_value = "sqlite:mimique-data/answers.sqlite")]
     database: String,
     /// csv: one row a participant x trial x response; wide: one row a participant; json: the rows of
-    /// csv as JSON lines; events: all that was stored, as JSON lines; psych-ds: a Psych-DS data set
+    /// csv as JSON lines; events: all that was stored, as JSON lines; tracks: participants' faces as they were measured, a row
+    /// per picture, as CSV; psych-ds: a Psych-DS data set
     #[arg(long, default_value = "csv", value_parser = parse_format)]
     format: Format,
     /// Study to export, where the database holds several
@@ -28,6 +29,9 @@ pub struct Args {
     /// Write the table of stimuli here, too: a row per clip, with its factors and what was measured of it
     #[arg(long, value_name = "FILE.csv")]
     stimuli: Option<PathBuf>,
+    /// Write the courses of the clips here, too, that participants' faces are held against: a row per frame, as CSV
+    #[arg(long, value_name = "FILE.csv")]
+    courses: Option<PathBuf>,
     /// Add the identifiers of the recruitment platform
     #[arg(long)]
     with_identifiers: bool,
@@ -64,6 +68,10 @@ async fn write(args: &Args, storage: &Storage, json: bool) -> anyhow::Result<()>
     let options = Options { with_identifiers: args.with_identifiers, cells };
     if let Some(path) = &args.stimuli {
         let table = stimuli(storage, args.study.as_deref()).await.with_context(named)?;
+        output::write(path, &table.1)?;
+    }
+    if let Some(path) = &args.courses {
+        let table = courses(storage, args.study.as_deref()).await.with_context(named)?;
         output::write(path, &table.1)?;
     }
     let export = Export::open(storage, args.study.as_deref(), args.format, options).await;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Difference, Measures};
+use crate::{ClipCourses, Difference, Measures};
 
 /// What is measured of a clip.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,6 +31,9 @@ pub struct ClipMeasures {
     /// | `obj_recorded_lip_gap_error_mm` | by how much the lips' distance is another |
     /// | `obj_recorded_lip_closures_kept` | share of the frames with shut lips in which these are shut, too |
     pub values: Vec<(String, f64)>,
+    /// How its shapes move, in studies that measure participants' faces; none of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub courses: Option<ClipCourses>,
 }
 
 impl ClipMeasures {
@@ -40,7 +43,7 @@ impl ClipMeasures {
             |(part, mm): &(&str, f64)| (format!("obj_range_mm_{}", part.to_lowercase()), *mm);
         let mut values: Vec<(String, f64)> = measures.range_mm.iter().map(range).collect();
         values.push(("obj_jerk_m_per_s3".to_owned(), measures.jerk));
-        let mut found = Self { clip: clip.to_owned(), values };
+        let mut found = Self { clip: clip.to_owned(), values, courses: None };
         found.add("obj_widest_mouth_mm", measures.widest_mouth_mm);
         found
     }

@@ -23,6 +23,7 @@
 //! ```
 
 mod clip_measures;
+mod courses;
 mod difference;
 mod face;
 mod lips;
@@ -32,6 +33,7 @@ mod motion;
 mod same_but_method;
 
 pub use clip_measures::ClipMeasures;
+pub use courses::ClipCourses;
 pub use difference::{Difference, LipClosures, NotComparable, PartDifference, difference};
 pub use face::ComparedFace;
 pub use lips::LipPair;

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::difference::{Difference, difference};
 use crate::markers::{correlations, median_correlation};
-use crate::{ClipMeasures, ComparedFace, FaceMotion, measures};
+use crate::{ClipCourses, ClipMeasures, ComparedFace, FaceMotion, measures};
 
 /// Heads that are turned this many degrees from each other are seen to.
 const HEAD_DEG: f64 = 1.0;
@@ -216,7 +216,13 @@ pub fn compare_clips(
                 hold(a, b, &faces, &mut comparison);
             }
         }
-        comparison.measures.extend(shown.iter().map(|own| measured(own, &shown, &faces)));
+        let of = |own: &Shown<'_>| {
+            let SolvedTake { shape_names, weights, rate_hz, .. } = &own.solved;
+            let courses = || ClipCourses::of(shape_names, weights, *rate_hz);
+            let courses = study.mimicry.is_some().then(courses);
+            ClipMeasures { courses, ..measured(own, &shown, &faces) }
+        };
+        comparison.measures.extend(shown.iter().map(of));
     }
     // With another sound the face moves as it does.
     for clip in study.clips() {

@@ -40,6 +40,9 @@ fn key(study: &Study, clips: &BTreeMap<String, ClipSource>) -> Option<String> {
     let made: BTreeMap<&String, &str> =
         clips.iter().map(|(id, clip)| (id, clip.provenance.as_str())).collect();
     let stimuli = serde_json::to_value(&study.stimuli).ok()?;
-    let key = Provenance::default().json("program", program).json("stimuli", stimuli);
+    let mut key = Provenance::default().json("program", program).json("stimuli", stimuli);
+    if study.mimicry.is_some() {
+        key = key.json("courses", true);
+    }
     Some(key.json("clips", json!(made)).hash())
 }

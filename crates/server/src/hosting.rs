@@ -7,7 +7,9 @@ use crate::comparison::comparison_of;
 use mimique_comparison::ClipMeasures;
 use mimique_stimulus::{Places, Progress, prepare};
 use mimique_storage::durable_file;
-use mimique_study::{ClipSource, MEDIA_PREFIX, Study, media_type, resolve_path};
+use mimique_study::{
+    ClipSource, MEDIA_PREFIX, MIMICRY_FILES, MimicryFile, Study, media_type, resolve_path,
+};
 use serde_json::json;
 use sha2::{Digest as _, Sha256};
 
@@ -47,14 +49,22 @@ pub fn prepare_hosting(
     })
 }
 
-/// Puts every picture and video into the folder of the packs, and names it among the clips.
+/// Puts every picture and video, and what measures participants' faces, into the folder of the packs, and names it among the clips.
 fn add_media(
     study: &Study,
     places: &Places,
     clips: &mut BTreeMap<String, ClipSource>,
 ) -> Result<(), String> {
-    for path in study.media() {
-        let place = resolve_path(path, &places.study, places.data.as_deref())
+    let media = study.media().into_iter().map(|path| {
+        (format!("{MEDIA_PREFIX}{path}"), path.to_owned(), media_type(path).map(str::to_owned))
+    });
+    let of_mimicry = study.mimicry.iter().flat_map(|mimicry| {
+        let of =
+            |file: MimicryFile| (file.key(), file.path(mimicry), Some(file.media_type.to_owned()));
+        MIMICRY_FILES.map(of)
+    });
+    for (key, path, media_type) in media.chain(of_mimicry) {
+        let place = resolve_path(&path, &places.study, places.data.as_deref())
             .map_err(|error| error.to_string())?;
         let at = |error: std::io::Error| {
             format!("{}: cannot be read ({error}); correct the path", place.display())
@@ -69,10 +79,10 @@ fn add_media(
         let source = json!({
             "avatar": hash, "operators": "", "take": "", "method": { "method": "recorded" },
             "duration_ms": 0.0, "bytes": bytes.len(), "provenance": hash, "weights_hash": "",
-            "video": media_type(path),
+            "video": media_type,
         });
         let source = serde_json::from_value(source).map_err(|error| error.to_string())?;
-        clips.insert(format!("{MEDIA_PREFIX}{path}"), source);
+        clips.insert(key, source);
     }
     Ok(())
 }

@@ -12,6 +12,7 @@ use crate::event::EventKind;
 use crate::plan::{Plan, Step, StepKind};
 use crate::record::Record;
 use crate::sound_answers::are_of_sound_check;
+use crate::tracked_face::are_of_mimicry;
 
 /// Why an event cannot be a session's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +90,8 @@ struct Allowed {
     /// Place of its questions in [`Admission::asked`].
     asked: usize,
     is_timed: bool,
-    is_sound_check: bool,
+    /// What the answers of a page must be whose controls are a script's.
+    scripted: Option<fn(&Answers) -> bool>,
 }
 
 /// Whether a trial is one that an adaptive block may end before.
@@ -124,13 +126,17 @@ impl Admission {
                 clip: step.trial().map(|trial| trial.clip.clone()),
                 asked: place,
                 is_timed: step.time_limit.is_some(),
-                is_sound_check: step.kind == StepKind::Sound,
+                scripted: match step.kind {
+                    StepKind::Sound => Some(are_of_sound_check),
+                    StepKind::Mimicry => Some(are_of_mimicry),
+                    _ => None,
+                },
             };
             steps.insert(step.id.clone(), allowed);
         }
         let is_required = |step: &&Step| match &step.kind {
             StepKind::Trial(trial) => !trial.training,
-            StepKind::Questions { .. } | StepKind::Sound => true,
+            StepKind::Questions { .. } | StepKind::Sound | StepKind::Mimicry => true,
             _ => false,
         };
         let may_be_left_out = |step: &&Step| may_be_left_out(plan, step);
@@ -180,13 +186,13 @@ impl Admission {
             }
             EventKind::PageFinished { step, answers, timed_out } => {
                 let step = self.step(step)?;
-                match step.clip {
-                    Some(_) => Err(Misfit::OtherKind),
-                    None if step.is_sound_check => match are_of_sound_check(answers) {
+                match (&step.clip, step.scripted) {
+                    (Some(_), _) => Err(Misfit::OtherKind),
+                    (None, Some(are_fit)) => match are_fit(answers) {
                         true => Ok(()),
                         false => Err(Misfit::NoSuchAnswer),
                     },
-                    None => self.finished(step, answers, *timed_out),
+                    (None, None) => self.finished(step, answers, *timed_out),
                 }
             }
             _ => Ok(()),

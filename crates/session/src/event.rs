@@ -432,6 +432,10 @@ pub struct PlayLog {
     /// What was heard: a [`SoundLog`], which the page hands on as it is; null for a clip without sound.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub sound: Value,
+    /// The participant's face: a [`crate::TrackedFace`], which the page hands on as it is; null where none was to be
+    /// measured.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub mimicry: Value,
     /// How many messages of the play another program on the machine was sent; null where it was not there, or where
     /// the study tells none.
     #[serde(skip_serializing_if = "Option::is_none")]

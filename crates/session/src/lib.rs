@@ -11,6 +11,7 @@ mod session_file;
 mod site_file;
 mod sound_answers;
 mod standing;
+mod tracked_face;
 pub mod wire;
 
 pub use admission::{Admission, Misfit, SessionLimits};
@@ -23,3 +24,4 @@ pub use record::{Attempt, CutShort, EarlyEnd, EndReason, FinishedStep, Record};
 pub use session_file::{SessionFile, SessionFileError, WrongLine};
 pub use site_file::SiteFile;
 pub use standing::Standing;
+pub use tracked_face::{TrackedFace, TrackedPicture};

@@ -26,13 +26,13 @@ fn text(hearing: &str) -> String {
 fn checked(outcome: &str) -> Input {
     let answers = [("sound_check", json!(outcome)), ("sound_check_attempts", json!(2))];
     let answers: Answers = answers.map(|(name, value)| (name.to_owned(), value)).into();
-    Input::SoundChecked(answers)
+    Input::PageScripted(answers)
 }
 
 /// The page stands at the sound check.
 fn at_check(hearing: &str) -> Page {
     let mut page = Page::open(&text(hearing), 1);
-    while !matches!(page.view(), View::Sound(_)) {
+    while !matches!(page.view(), View::Scripted(_)) {
         assert!(page.act(&mut |_, _| Value::Null), "{:?}", page.view());
     }
     page
@@ -41,15 +41,15 @@ fn at_check(hearing: &str) -> Page {
 #[test]
 fn the_check_says_what_it_is_in_both_languages_and_is_passed_by_its_result_alone() {
     let mut page = at_check("noted");
-    let View::Sound(shown) = page.view() else { panic!() };
+    let View::Scripted(shown) = page.view() else { panic!() };
     assert_eq!(shown.heading, "Sound");
     let pages: Value = serde_json::from_str(&shown.pages).unwrap();
     assert_eq!(pages["check"]["mostTones"], 4);
     assert_eq!(pages["words"]["fr"]["sound_heading"], "Le son");
     page.send(Input::Next);
-    assert!(matches!(page.view(), View::Sound(_)), "the button of other pages leads nowhere");
+    assert!(matches!(page.view(), View::Scripted(_)), "the button of other pages leads nowhere");
     page.reload();
-    assert!(matches!(page.view(), View::Sound(_)));
+    assert!(matches!(page.view(), View::Scripted(_)));
     page.send(checked("not_heard"));
     let View::Trial(trial) = page.view() else { panic!("{:?}", page.view()) };
     assert_eq!(trial.captions, Some(["offered", "Captions"].map(str::to_owned)));

@@ -88,6 +88,10 @@ pub use test::krippendorff::{
     AlphaEstimate, Krippendorff, MeasurementLevel, UnitValues, krippendorff,
 };
 pub use test::kruskal_wallis::{Dunn, KruskalWallis, kruskal_wallis};
+pub use test::lagged_correlation::{
+    CoupledPlay, Couplings, Courses, LagWindow, LaggedCorrelation, LaggedCorrelationOptions,
+    PersonCoupling, Surrogates, lagged_correlation, resampled_course,
+};
 pub use test::mann_whitney::{MannWhitney, mann_whitney};
 pub use test::min_f::{MinFPrime, RepeatedMeasuresF, min_f_prime};
 pub use test::mixed_model::{

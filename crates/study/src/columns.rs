@@ -75,6 +75,41 @@ pub const SOUND_COLUMNS: [(&str, ColumnKind, &str, &str); 11] = {
     ]
 };
 
+/// Of studies that measure participants' faces, after `beside_drift_ms`: name, kind, unit, what it means.
+pub const MIMICRY_COLUMNS: [(&str, ColumnKind, &str, &str); 8] = {
+    use ColumnKind::{Integer, Text};
+    [
+        (
+            "mimicry_consent",
+            Text,
+            "",
+            "Whether the participant agreed that the face is measured: agreed, declined",
+        ),
+        ("mimicry_version", Text, "", "Version of the text that this is the answer to"),
+        (
+            "mimicry_camera",
+            Text,
+            "",
+            "What became of it: seen, a face was in the picture; not_seen; refused, no_camera, failed, insecure: why there is no picture; off of those who declined or went on without",
+        ),
+        (
+            "mimicry_status",
+            Text,
+            "",
+            "Of the play: tracked, or why nothing was measured: stopped by the participant, lost (no camera any more), failed, starting; empty of those who take part without",
+        ),
+        ("mimicry_pictures", Integer, "", "Pictures of the camera that were measured in the play"),
+        ("mimicry_faces", Integer, "", "Pictures of these in which a face was found"),
+        (
+            "mimicry_clock",
+            Text,
+            "",
+            "What their times are of: capture, when the camera took the picture; presented, when the browser had it",
+        ),
+        ("mimicry_model", Text, "", "SHA-256 of the model that measured"),
+    ]
+};
+
 /// Of studies with triggers, after `beside_drift_ms`: name, kind, unit, what it means.
 pub const TRIGGER_COLUMN: (&str, ColumnKind, &str, &str) = (
     "triggers_sent",
@@ -209,6 +244,25 @@ pub const PAIR_COLUMNS: [(&str, ColumnKind, &str, &str); 5] = {
 pub const STIMULI_COLUMNS: [&str; 7] =
     ["stimulus", "segment", "avatar", "method", "duration_ms", "provenance", "weights_hash"];
 
+/// Columns of the table of participants' faces (`mimique export --format tracks`); the 52 scores from 0 to 1
+/// ([`crate::TRACKED_SHAPES`]) stand behind them.
+pub const TRACK_COLUMNS: [&str; 10] = [
+    "participant_id",
+    "stage",
+    "trial_id",
+    "stimulus",
+    "beside",
+    "provenance",
+    "play",
+    "whole",
+    "time_ms",
+    "face",
+];
+
+/// Columns of the table of the clips' courses (`mimique export --courses`); the 51 shapes of [`crate::TRACKED_SHAPES`]
+/// stand behind them.
+pub const COURSE_COLUMNS: [&str; 3] = ["stimulus", "provenance", "time_ms"];
+
 /// Whether a column of exports is called so: nothing of a study may be. Columns of blocks ([`LEVEL_COLUMNS`] and the like) are only
 /// taken where there are such blocks.
 pub fn is_reserved_column(name: &str) -> bool {
@@ -216,6 +270,7 @@ pub fn is_reserved_column(name: &str) -> bool {
         || EXCLUSION_COLUMNS.contains(&name)
         || name == TRIGGER_COLUMN.0
         || name == TRACE_COLUMN.0
+        || MIMICRY_COLUMNS.iter().any(|(column, ..)| *column == name)
         || SOUND_COLUMNS.iter().any(|(column, ..)| *column == name)
         || FIXED_COLUMNS.iter().any(|(column, ..)| *column == name)
 }

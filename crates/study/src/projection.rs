@@ -9,8 +9,9 @@ use serde_json::Value;
 use crate::question::Question;
 use crate::study_file::{
     AttentionRule, Avatar, Calibration, Clip, Component, Consent, Contact, DeviceRules, JsonBlock,
-    LocalText, Look, Multilingual, Questionnaire, Recruitment, RepeatPrevention, ScreeningRule,
-    Section, Sequence, SoundPages, Study, Training, Translations, Triggers, questions_among,
+    LocalText, Look, MimicryPages, Multilingual, Questionnaire, Recruitment, RepeatPrevention,
+    ScreeningRule, Section, Sequence, SoundPages, Study, Training, Translations, Triggers,
+    questions_among,
 };
 
 /// What the participant's page is sent of a study, and all that orders and plans are drawn from: the
@@ -68,6 +69,10 @@ pub struct StudyProjection {
     #[serde(default, skip_serializing_if = "Value::is_null")]
     #[schemars(with = "Option<Triggers>")]
     pub triggers: Value,
+    /// What the page hands on to the scripts that measure the participant's face: [`MimicryPages`], or null.
+    #[serde(default, skip_serializing_if = "Value::is_null")]
+    #[schemars(with = "Option<MimicryPages>")]
+    pub mimicry: Value,
     /// Trials for practice.
     pub training: Option<Training>,
     /// Questions that several components ask.
@@ -109,6 +114,7 @@ impl Study {
             calibration: self.calibration.clone(),
             sound: serde_json::to_value(self.sound_pages()).unwrap_or_default(),
             triggers: serde_json::to_value(self.triggers).unwrap_or_default(),
+            mimicry: serde_json::to_value(self.mimicry_pages()).unwrap_or_default(),
             training: self.training.clone(),
             questions: self.questions.clone(),
             components: self.projected_components(),
@@ -167,7 +173,12 @@ impl Multilingual for StudyProjection {
 impl StudyProjection {
     /// What the pages say of sound in a language, by name; nothing in a study without.
     pub fn sound_word(&self, language: &str, name: &str) -> &str {
-        self.sound["words"][language][name].as_str().unwrap_or_default()
+        word(&self.sound, language, name)
+    }
+
+    /// What the pages say of the measuring of faces in a language, by name; nothing in a study without.
+    pub fn mimicry_word(&self, language: &str, name: &str) -> &str {
+        word(&self.mimicry, language, name)
     }
 
     /// Whether only those may take part who hear the tones of the sound check.
@@ -179,4 +190,9 @@ impl StudyProjection {
     pub fn all_questions(&self) -> impl Iterator<Item = &Question> {
         questions_among(self.demographics.as_ref(), &self.components, &self.questions)
     }
+}
+
+/// A text of what studies alone carry that need it.
+fn word<'a>(pages: &'a Value, language: &str, name: &str) -> &'a str {
+    pages["words"][language][name].as_str().unwrap_or_default()
 }

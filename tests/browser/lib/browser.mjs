@@ -21,12 +21,14 @@ const backends = {
   ],
 };
 
-/** A browser with a fresh profile: `{page, context, requests, errors, close()}`. */
-export async function open(backend, { locale = "en-GB", viewport = { width: 1280, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", forcedColors = "none", timezone, touch = false, profile } = {}) {
+/** A browser with a fresh profile: `{page, context, requests, errors, close()}`; `more`: options of Chromium, `permissions`:
+    what pages may use unasked. */
+export async function open(backend, { locale = "en-GB", viewport = { width: 1280, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", forcedColors = "none", timezone, touch = false, profile, more = [], permissions = [] } = {}) {
   profile ??= mkdtempSync(join(tmpdir(), "mimique-profile-"));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: executable,
-    args: [...quiet, ...backends[backend]],
+    args: [...quiet, ...backends[backend], ...more],
+    permissions,
     headless: true,
     locale,
     viewport,

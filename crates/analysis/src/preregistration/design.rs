@@ -184,6 +184,13 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         );
         text.line("");
     }
+    if study.mimicry.is_some() {
+        text.both(
+            "The faces of participants who agree on a page of its own are measured in their browser while clips play (MediaPipe’s Face Landmarker; no picture is kept). Mimicry is the lagged cross-correlation of the clip’s weights with the scores of the face, at lags from −0.5 to 1.5 s, Fisher’s z averaged over shapes, plays, people; tested is its highest value over all lags, against 999 surrogates (each person’s plays against the other clips that the person saw), p corrected over lags.",
+            "Les visages des participants qui l’acceptent sur une page à part sont mesurés dans leur navigateur pendant les extraits (Face Landmarker de MediaPipe ; aucune image n’est conservée). Le mimétisme est la corrélation croisée décalée des poids de l’extrait avec les scores du visage, aux décalages de −0,5 à 1,5 s, le z de Fisher moyenné sur les formes, les lectures, les personnes ; est testée sa plus haute valeur sur tous les décalages, contre 999 substituts (les lectures de chaque personne contre les autres extraits qu’elle a vus), p corrigé pour les décalages.",
+        );
+        text.line("");
+    }
     pairs::design(text, study, language, naming);
     panels::design(text, study, language, naming);
     levels::design(text, study, language);

@@ -19,6 +19,7 @@ use mimique_stats::Table;
 use mimique_study::Study;
 
 use crate::language::Language;
+use crate::mimicry::tables::FaceTables;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use crate::trials::stimulus_measures::StimulusMeasures;
@@ -52,8 +53,20 @@ pub struct Report {
 pub struct ReportOptions<'a> {
     /// The table of stimuli: answers are held against what was measured of them, too.
     pub stimuli: Option<&'a Table>,
+    /// Participants' faces (`mimique export --format tracks`) and the courses of the clips (`mimique export --courses`), in
+    /// studies that measure them.
+    pub faces: Option<MeasuredFaces<'a>>,
     /// Address of the study's preview: what stands for one clip in a figure leads to that clip there.
     pub preview: Option<&'a str>,
+}
+
+/// Participants' faces, and how the clips moved that they saw.
+#[derive(Debug, Clone, Copy)]
+pub struct MeasuredFaces<'a> {
+    /// A row per picture of a face.
+    pub tracks: &'a Table,
+    /// A row per frame of a clip.
+    pub courses: &'a Table,
 }
 
 /// Computes the report. Refuses an export without the columns of the tidy form or without any trial
@@ -69,14 +82,18 @@ pub fn analyze_with(
     language: Language,
     options: ReportOptions<'_>,
 ) -> Result<Report, ExportError> {
-    let ReportOptions { stimuli, preview } = options;
+    let ReportOptions { stimuli, faces, preview } = options;
     let stimuli = stimuli.map(|table| StimulusMeasures::read(table, study)).transpose()?;
+    let read = |MeasuredFaces { tracks, courses }| FaceTables::read(tracks, courses);
+    let faces = faces.map(read).transpose()?;
     let export = Export::read(table, study)?;
     if export.trials.is_empty() {
         return Err(export.flow.no_trial());
     }
-    let section::Sections { document, results, readings, replay } =
-        section::write(&export, study, stimuli.as_ref(), preview.map(Preview), language);
+    let section::Sections { document, results, readings, replay } = {
+        let beside = section::Beside { stimuli: stimuli.as_ref(), faces: faces.as_ref() };
+        section::write(&export, study, beside, preview.map(Preview), language)
+    };
     let mut files = document_files(&document, language);
     files.push(ReportFile { path: "results.json".to_owned(), text: results });
     files.extend(replay);

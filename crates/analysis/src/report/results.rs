@@ -11,6 +11,7 @@ use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::comparison::Comparison;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::trial_level::TrialLevel;
+use crate::mimicry::MimicryResult;
 use crate::report::section::best_worst::BestWorstCounts;
 use crate::report::section::choices::Choices;
 use crate::report::section::course::Course;
@@ -70,6 +71,9 @@ pub(crate) struct Results<'a> {
     /// Where a table of stimuli was given.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stimulus_measures: Vec<MeasureCorrelation>,
+    /// Of studies that measure faces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mimicry: Option<MimicryResult>,
 }
 
 impl Results<'_> {
@@ -95,6 +99,7 @@ impl Results<'_> {
         self.panels.extend(part.panels);
         self.traces.extend(part.traces);
         self.stimulus_measures.extend(part.stimulus_measures);
+        self.mimicry = self.mimicry.take().or(part.mimicry);
     }
 }
 

@@ -209,6 +209,20 @@ impl Walk<'_, '_> {
                     self.hear();
                     continue;
                 }
+                // Nobody who is simulated has a face.
+                StepKind::Mimicry => {
+                    self.shown(&step.id);
+                    self.read(15_000.0);
+                    let version = self.model.study.mimicry.as_ref().map(|own| &own.consent.version);
+                    let answers = [
+                        ("mimicry_consent", "declined"),
+                        ("mimicry_version", version.map_or("", String::as_str)),
+                        ("mimicry_camera", "off"),
+                    ];
+                    let answers = answers.map(|(name, word)| (name.to_owned(), word.into()));
+                    self.page.send(Input::PageScripted(answers.into_iter().collect()));
+                    continue;
+                }
                 StepKind::Calibration(calibration) => {
                     self.shown(&step.id);
                     self.calibrate(calibration, &client);
@@ -268,7 +282,7 @@ impl Walk<'_, '_> {
             ("sound_check_rounds", serde_json::json!(rounds)),
         ];
         let answers = answers.map(|(name, value)| (name.to_owned(), value));
-        self.page.send(Input::SoundChecked(answers.into_iter().collect()));
+        self.page.send(Input::PageScripted(answers.into_iter().collect()));
     }
 
     /// What a browser would have heard: sound on time.
@@ -460,6 +474,7 @@ impl Walk<'_, '_> {
             renderer: String::new(),
             drift_ms: 0.0,
             sound: serde_json::Value::Null,
+            mimicry: serde_json::Value::Null,
             triggers: None,
             panel: serde_json::Value::Null,
             traces: serde_json::Value::Null,

@@ -18,6 +18,9 @@ pub enum ExportError {
     /// The table of stimuli cannot be used.
     #[error(transparent)]
     Stimuli(#[from] StimuliError),
+    /// The tables of participants' faces and of the clips' courses cannot be used.
+    #[error(transparent)]
+    Mimicry(#[from] MimicryError),
     /// A cell that every row has is blank.
     #[error("column \"{column}\": line {line}: the cell is blank; export the study again")]
     Blank {
@@ -80,6 +83,56 @@ pub enum StimuliError {
         /// The cell.
         cell: String,
     },
+}
+
+/// Why tables of faces and courses cannot be used. `table` is `tracks` or `courses`.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MimicryError {
+    /// A column is absent.
+    #[error(
+        "column \"{column}\": there is no such column; give the table of {table} that `mimique export` writes"
+    )]
+    NoColumn {
+        /// The table.
+        table: &'static str,
+        /// The column.
+        column: String,
+    },
+    /// A cell of a column of numbers is none.
+    #[error(
+        "column \"{column}\": line {line}: \"{cell}\" is not a number; export the table of {table} again"
+    )]
+    NotANumber {
+        /// The table.
+        table: &'static str,
+        /// The column.
+        column: String,
+        /// Line of the file, from 1.
+        line: usize,
+        /// The cell.
+        cell: String,
+    },
+    /// Times that run backwards, or a row without one.
+    #[error(
+        "column \"time_ms\": line {line}: no time, or none after that of the row before; export the table of {table} again"
+    )]
+    Time {
+        /// The table.
+        table: &'static str,
+        /// Line of the file, from 1.
+        line: usize,
+    },
+}
+
+impl MimicryError {
+    /// The table that is at fault: `tracks` or `courses`.
+    pub fn table(&self) -> &'static str {
+        match self {
+            Self::NoColumn { table, .. }
+            | Self::NotANumber { table, .. }
+            | Self::Time { table, .. } => table,
+        }
+    }
 }
 
 /// The reasons and their counts, in brackets; empty where there are none.

@@ -211,6 +211,11 @@ impl Export {
         self.answers.get(question).map_or(&[], Vec::as_slice)
     }
 
+    /// The answers to every question.
+    pub(crate) fn all_answers(&self) -> impl Iterator<Item = &[Answer]> {
+        self.answers.values().map(Vec::as_slice)
+    }
+
     /// The combinations of levels that the trials have. The trials must be complete.
     pub(crate) fn combinations(&self) -> &Combinations {
         self.combinations.get_or_init(|| Combinations::of(&self.trials))

@@ -12,7 +12,7 @@ use crate::support::{Raters, demo_study, export};
 fn report(study: &Study, stimuli: &str, language: Language) -> Result<Report, ExportError> {
     let table = Table::parse(export(study, &Raters { people: 30, effect: 1.5, seed: 7 })).unwrap();
     let stimuli = Table::parse(stimuli).unwrap();
-    let options = ReportOptions { stimuli: Some(&stimuli), preview: None };
+    let options = ReportOptions { stimuli: Some(&stimuli), ..ReportOptions::default() };
     analyze_with(&table, study, language, options)
 }
 

@@ -260,6 +260,7 @@ impl Capsule<'_> {
         let mut site = serde_json::to_value(site)?;
         if let Some(study) = site.pointer_mut("/bundle/study").and_then(Value::as_object_mut) {
             study.remove("triggers");
+            study.remove("mimicry");
         }
         Ok(site)
     }

@@ -61,6 +61,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let place = || args.out.display().to_string();
     is_free(&args)?;
     let checked = checked_study(&args.study)?;
+    anyhow::ensure!(
+        checked.study().mimicry.is_none(),
+        "{}: /mimicry: pages hosted as files do not measure participants' faces; serve the study by `mimique serve`, or remove mimicry",
+        args.study.display()
+    );
     let prepared = prepare_study(&args.study, checked.study(), &args.packs)
         .map_err(|faults| anyhow::anyhow!(faults.join("\nerror: ")))?;
     let stage = if args.pilot { Stage::Pilot } else { Stage::Live };

@@ -31,7 +31,7 @@ pub struct Args {
     /// Folder of the site (`mimique export-site`), for the provenance of its clips
     #[arg(long)]
     site: Option<PathBuf>,
-    /// As of `mimique export`: csv, wide, json, events or psych-ds
+    /// As of `mimique export`: csv, wide, json, events, tracks or psych-ds
     #[arg(long, default_value = "csv", value_parser = parse_format)]
     format: Format,
     /// File to write (for psych-ds a folder, or a file ending in .zip); standard output if not given

@@ -11,13 +11,16 @@ pub enum Format {
     Json,
     /// Stored events as JSON lines.
     Events,
+    /// Participants' faces, as CSV.
+    Tracks,
     /// A Psych-DS data set.
     PsychDs,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 5] = [Self::Csv, Self::Wide, Self::Json, Self::Events, Self::PsychDs];
+    pub const ALL: [Self; 6] =
+        [Self::Csv, Self::Wide, Self::Json, Self::Events, Self::Tracks, Self::PsychDs];
 
     /// Its name on the command line and in addresses.
     pub fn word(self) -> &'static str {
@@ -26,6 +29,7 @@ impl Format {
             Self::Wide => "wide",
             Self::Json => "json",
             Self::Events => "events",
+            Self::Tracks => "tracks",
             Self::PsychDs => "psych-ds",
         }
     }

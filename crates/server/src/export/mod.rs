@@ -7,6 +7,7 @@
 //! | `wide` | one row a participant |
 //! | `json` | the tidy rows as JSON lines |
 //! | `events` | every stored event as JSON lines: what the other forms are made of, frame times too |
+//! | `tracks` | participants' faces as they were measured: a row per picture |
 //! | `psych-ds` | a Psych-DS data set: the tidy table, its data dictionary, the study file |
 //!
 //! A study that was changed while it ran has several versions; each session is read by its own, and
@@ -24,6 +25,7 @@ mod pieces;
 mod psych_ds;
 pub(crate) mod sources;
 mod stimuli;
+mod tracks;
 mod unstored;
 mod zipped;
 
@@ -36,6 +38,7 @@ pub use parts::{Export, Part};
 pub(crate) use pieces::exclusions;
 use sources::Sources;
 pub use stimuli::{stimuli, stimuli_of};
+pub use tracks::courses;
 pub use unstored::{Unstored, Written};
 pub(crate) use zipped::zip;
 

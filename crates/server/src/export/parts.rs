@@ -141,6 +141,7 @@ pub(super) fn main_file(format: Format, study_id: &str) -> String {
         Format::Wide => format!("{study_id}_wide.csv"),
         Format::Json => format!("{study_id}_responses.jsonl"),
         Format::Events => format!("{study_id}_events.jsonl"),
+        Format::Tracks => format!("{study_id}_tracks.csv"),
         Format::PsychDs => psych_ds::data_file(study_id),
     }
 }

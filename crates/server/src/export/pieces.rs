@@ -19,6 +19,7 @@ use super::error::ExportError;
 use super::layout::{About, Form, Layout, Lines, Rows};
 use super::lines::{self, EventLine};
 use super::sources::{Sources, as_started};
+use super::tracks::{self, TrackRows};
 use super::{Format, Options};
 
 /// Sessions that are read from the database at one time: their rows, not their events.
@@ -63,6 +64,7 @@ struct Shared {
 enum Written {
     Table(Box<Layout>),
     Events,
+    Tracks,
 }
 
 /// A piece that is being made.
@@ -142,6 +144,7 @@ impl Pieces {
         let csv = Form::Csv(self.options.cells);
         let written = match self.format {
             Format::Events => Written::Events,
+            Format::Tracks => Written::Tracks,
             Format::Csv | Format::PsychDs => {
                 Written::Table(Box::new(Layout::tidy(csv, sources, &identifiers)))
             }
@@ -158,6 +161,7 @@ impl Pieces {
         let header = match &written {
             Written::Table(layout) => layout.header()?,
             Written::Events => Vec::new(),
+            Written::Tracks => tracks::header()?,
         };
         let excluded = exclusions(&self.storage, &sources.study_id).await?;
         self.shared = Some(Arc::new(Shared {
@@ -230,6 +234,18 @@ async fn lines_of(
     let (storage, started) = (&shared.storage, as_started(session));
     let layout = match &shared.written {
         Written::Table(layout) => layout,
+        Written::Tracks => {
+            let mut rows = TrackRows::default();
+            let mut events = storage.stored_events(session.key, sequences);
+            while let Some(event) = events.next().await {
+                let event = event?;
+                // What no page of the plan could have sent counts in no table.
+                if event.misfit.is_none() {
+                    rows.add(&started, &event.body)?;
+                }
+            }
+            return Ok(rows.finish());
+        }
         Written::Events => {
             let mut lines = Lines::default();
             let mut events = storage.stored_events(session.key, sequences);

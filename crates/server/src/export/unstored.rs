@@ -19,6 +19,7 @@ use super::lines::{EventLine, add_event};
 use super::parts::main_file;
 use super::psych_ds;
 use super::sources::{Sources, Version};
+use super::tracks::{self, TrackRows};
 
 /// Writes sessions one by one, in any number of threads, and joins them to an export.
 pub struct Unstored {
@@ -84,6 +85,13 @@ impl Unstored {
                 }
                 written.lines.rows = events.len();
             }
+            Format::Tracks => {
+                let mut rows = TrackRows::default();
+                for event in events {
+                    rows.add(started, &event.body.to_string())?;
+                }
+                written.lines = rows.finish();
+            }
             Format::Wide => {
                 written.session = Some((started.clone(), Record::of(None, events)));
             }
@@ -107,6 +115,7 @@ impl Unstored {
         let (mut participants, mut rows) = (0, 0);
         let mut bytes = match self.format {
             Format::Events | Format::Wide => Vec::new(),
+            Format::Tracks => tracks::header()?,
             Format::Csv | Format::Json | Format::PsychDs => self.tidy.header()?,
         };
         let mut whole = Vec::new();

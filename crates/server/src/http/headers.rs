@@ -9,6 +9,12 @@ use axum::response::Response;
 
 use crate::state::settings::Settings;
 
+/// What a page may use of the device.
+pub(crate) const PERMISSIONS_POLICY: HeaderName = HeaderName::from_static("permissions-policy");
+/// Of the page of a study that measures faces: the camera too, which browsers let nobody use unasked.
+pub(crate) const WITH_CAMERA: &str =
+    "camera=(self), microphone=(), geolocation=(), payment=(), usb=()";
+
 /// An answer that pages of other origins may embed: its policy says which.
 #[derive(Clone)]
 pub(crate) struct Embeddable;
@@ -59,7 +65,7 @@ impl Headers {
             (header::X_FRAME_OPTIONS, fixed("DENY")),
             (HeaderName::from_static("cross-origin-opener-policy"), fixed("same-origin")),
             (
-                HeaderName::from_static("permissions-policy"),
+                PERMISSIONS_POLICY,
                 fixed("camera=(), microphone=(), geolocation=(), payment=(), usb=()"),
             ),
         ];

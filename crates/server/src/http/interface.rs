@@ -123,11 +123,11 @@ fn interface() -> Interface {
 fn describe_downloads(interface: Interface) -> Interface {
     const STUDY: &str = "/researcher/studies/{study}";
     let mut words: Vec<&str> = Format::ALL.iter().map(|format| format.word()).collect();
-    words.extend(["dictionary", "stimuli", "study"]);
+    words.extend(["dictionary", "stimuli", "courses", "study"]);
     let export = Download {
         summary: "Export: csv is the tidy table, wide one row a participant, json the tidy rows as JSON \
-            lines, events what is stored as JSON lines, psych-ds a folder in an archive, dictionary \
-            what every column means, stimuli a row per clip with what was measured of it, study the study file",
+            lines, events what is stored as JSON lines, tracks a row per picture of participants' faces, psych-ds a folder in an archive, dictionary \
+            what every column means, stimuli a row per clip with what was measured of it, courses a row per frame of the clips that faces are held against, study the study file",
         words: &[("format", &words)],
         queries: &[],
         flags: &[

@@ -17,8 +17,8 @@ pub(crate) async fn asset(
 
 pub(crate) async fn pack(
     State(app): State<App>,
-    Path(hash): Path<String>,
+    Path(name): Path<String>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    app.catalogue.pack(&hash).ok_or(Error::UnknownPack)?.respond(&headers)
+    app.catalogue.pack(&name).ok_or(Error::UnknownPack)?.respond(&headers)
 }

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use crate::accounts::identity::Researcher;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::http::headers::{Embeddable, content_security_policy};
+use crate::http::headers::{Embeddable, PERMISSIONS_POLICY, WITH_CAMERA, content_security_policy};
 use crate::http::language::accepted;
 use crate::state::App;
 use mimique_study::Multilingual as _;
@@ -97,6 +97,7 @@ pub(crate) async fn participant(
     let asked = asked.lang.as_deref();
     let page = from_template(&app, "participant/index.html", &study, asked, &headers)?;
     let triggers = app.study(&study)?.study().triggers.as_ref().map(|own| own.origin());
+    let measures_faces = app.study(&study)?.study().mimicry.is_some();
     let embedding = &app.settings.embedding;
     let mut page = match embedding.is_empty() {
         true => answered(page),
@@ -107,6 +108,10 @@ pub(crate) async fn participant(
         let policy = content_security_policy(packs, triggers.as_deref(), embedding);
         let policy = HeaderValue::from_str(&policy).map_err(Error::internal)?;
         page.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    if measures_faces {
+        let permissions = HeaderValue::from_static(WITH_CAMERA);
+        page.headers_mut().insert(PERMISSIONS_POLICY, permissions);
     }
     if !embedding.is_empty() {
         page.extensions_mut().insert(Embeddable);

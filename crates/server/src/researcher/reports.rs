@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mimique_analysis::{Language, Report, ReportOptions, analyze_with};
+use mimique_analysis::{Language, MeasuredFaces, Report, ReportOptions, analyze_with};
 use mimique_stats::Table;
 use mimique_storage::Storage;
 use mimique_study::Study;
 use tokio::sync::Semaphore;
 
 use crate::error::Error;
-use crate::export::{Format, Options, export, stimuli};
+use crate::export::{Format, Options, courses, export, stimuli};
 use crate::state::hosted_study::HostedStudy;
 
 /// A report takes a core for some seconds: one at a time.
@@ -51,9 +51,14 @@ impl Reports {
         let exported = export(storage, Some(study.id()), Format::Csv, Options::default()).await?;
         let csv = exported.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
         let (_, stimuli) = stimuli(storage, Some(study.id())).await?;
+        let faces = match study.study().mimicry {
+            Some(_) => Some(measured_faces(storage, study.id()).await?),
+            None => None,
+        };
         let (study, preview) = (study.study().clone(), preview.to_owned());
-        let made =
-            tokio::task::spawn_blocking(move || make(&csv, &stimuli, &study, language, &preview));
+        let made = tokio::task::spawn_blocking(move || {
+            make(&csv, &stimuli, faces.as_ref(), &study, language, &preview)
+        });
         let report = made.await.map_err(Error::internal)??;
         let report = Arc::new(report);
         let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
@@ -65,9 +70,18 @@ impl Reports {
     }
 }
 
+/// Participants' faces, and the courses of the clips, as CSV.
+async fn measured_faces(storage: &Storage, id: &str) -> Result<[Vec<u8>; 2], Error> {
+    let tracks = export(storage, Some(id), Format::Tracks, Options::default()).await?;
+    let tracks = tracks.files.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default();
+    let (_, courses) = courses(storage, Some(id)).await?;
+    Ok([tracks, courses])
+}
+
 fn make(
     csv: &[u8],
     stimuli: &[u8],
+    faces: Option<&[Vec<u8>; 2]>,
     study: &Study,
     language: Language,
     preview: &str,
@@ -77,7 +91,14 @@ fn make(
     // A study of tables has no stimuli.
     let shown = !study.clips().is_empty();
     let stimuli = shown.then(|| Table::parse(stimuli)).transpose().map_err(no_report)?;
-    let options = ReportOptions { stimuli: stimuli.as_ref(), preview: Some(preview) };
+    // Before anybody was measured, or a clip is drawn, there is nothing below the heads.
+    let parse = |bytes: &Vec<u8>| Table::parse(bytes.clone()).ok();
+    let tables = faces.map(|[tracks, courses]| (parse(tracks), parse(courses)));
+    let faces = match &tables {
+        Some((Some(tracks), Some(courses))) => Some(MeasuredFaces { tracks, courses }),
+        _ => None,
+    };
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview: Some(preview) };
     analyze_with(&table, study, language, options).map_err(no_report)
 }
 

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::files::packs::PackStore;
 use crate::files::static_file::StaticFile;
 use crate::state::hosted_study::HostedStudy;
+use mimique_study::MIMICRY_FILES;
 
 /// One state of what is hosted; cheap to clone.
 #[derive(Clone, Default)]
@@ -17,6 +18,8 @@ struct Hosted {
     /// The bundle of every version ever served of these studies, JSON text, by study and hash.
     bundles: BTreeMap<(String, String), Arc<str>>,
     packs: PackStore,
+    /// Media type of what browsers take by it alone, by hash and ending.
+    typed: BTreeMap<String, &'static str>,
 }
 
 /// What is hosted now.
@@ -80,9 +83,13 @@ impl Catalogue {
         now.bundles.get(&key).cloned().ok_or(Error::UnknownStudy)
     }
 
-    /// A pack by its hash.
-    pub fn pack(&self, hash: &str) -> Option<StaticFile> {
-        self.now().packs.get(hash).cloned()
+    /// A pack by its hash. What browsers take by its media type alone, the scripts and the module that measure faces, has
+    /// that type under its hash with `.js` or `.wasm` behind it.
+    pub fn pack(&self, name: &str) -> Option<StaticFile> {
+        let now = self.now();
+        let Some((hash, _)) = name.split_once('.') else { return now.packs.get(name).cloned() };
+        let content_type = now.typed.get(name)?;
+        now.packs.get(hash).map(|file| StaticFile { content_type, ..file.clone() })
     }
 
     fn now(&self) -> Arc<Hosted> {
@@ -95,6 +102,11 @@ impl Hosted {
         for version in versions.iter().filter(|version| version.study_id == study.id()) {
             let key = (version.study_id.clone(), version.config_hash.clone());
             let bundle = HostedStudy::from_version(version, study.stage())?;
+            for file in MIMICRY_FILES {
+                if let (Some(pack), Some(ending)) = (bundle.clips().get(&file.key()), file.ending) {
+                    self.typed.insert(format!("{}.{ending}", pack.avatar), file.media_type);
+                }
+            }
             let text = serde_json::to_string(bundle.bundle()).map_err(damaged)?;
             self.bundles.insert(key, text.into());
         }

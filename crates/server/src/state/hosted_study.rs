@@ -6,7 +6,7 @@ use mimique_comparison::ClipMeasures;
 use mimique_session::wire::{Bundle, StudySummary};
 use mimique_stimulus::Places;
 use mimique_storage::{StorageError, StudyVersion};
-use mimique_study::ClipSource;
+use mimique_study::{ClipSource, MIMICRY_FILES, MimicryFile, StudyProjection};
 use mimique_study::{Study, StudyFileError, config_hash, percent_encoded};
 use serde_json::Value;
 
@@ -71,7 +71,7 @@ impl HostedStudy {
         let bundle = Bundle {
             study_id: study.id.clone(),
             config_hash: config_hash(&file),
-            study: study.projection(),
+            study: projection(&study, &clips),
             clips,
         };
         Self { study, stage, file, bundle, measures: Vec::new(), places: None }
@@ -183,4 +183,17 @@ impl HostedStudy {
         }
         Some(filled)
     }
+}
+
+/// What the page needs of a study, with where the files are that measure faces.
+fn projection(study: &Study, clips: &BTreeMap<String, ClipSource>) -> StudyProjection {
+    let mut projection = study.projection();
+    if !projection.mimicry.is_null() {
+        let of = |file: &MimicryFile| {
+            Some((file.name.to_owned(), clips.get(&file.key())?.avatar.as_str().into()))
+        };
+        let files: serde_json::Map<String, Value> = MIMICRY_FILES.iter().filter_map(of).collect();
+        projection.mimicry["files"] = files.into();
+    }
+    projection
 }

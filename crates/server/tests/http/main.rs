@@ -12,6 +12,7 @@ mod defences;
 mod enrolment;
 mod exports;
 mod limits;
+mod mimicry;
 mod misfits;
 mod pages;
 mod participant;
@@ -120,6 +121,8 @@ topics! {
     storage::one_impossible_change_does_not_take_others_with_it,
     storage::what_was_accepted_before_the_end_is_committed,
     storage::a_later_schema_is_refused,
+    mimicry::the_camera_is_for_pages_that_measure_alone,
+    mimicry::tracks_are_exported_and_deleted_with_their_session,
     misfits::a_strangers_event_reaches_no_table,
     misfits::what_comes_after_the_receipt_changes_no_standing,
     pages::only_pages_that_are_named_may_embed_a_study,

@@ -27,7 +27,7 @@ pub(super) fn can_submit(plan: &Plan, state: &State) -> bool {
     let answered = shown_questions(step, state)
         .all(|question| question.accept(state.record.draft(&question.id)).is_ok());
     match &step.kind {
-        StepKind::Consent | StepKind::Sound => false,
+        StepKind::Consent | StepKind::Sound | StepKind::Mimicry => false,
         StepKind::Page(_) | StepKind::Debriefing(_) | StepKind::Feedback { .. } => true,
         StepKind::Device => {
             gate::device_problems(plan, state).is_some_and(|unmet| unmet.is_empty())

@@ -127,9 +127,11 @@ impl Transition<'_> {
         }
     }
 
-    /// The volume was set, and the tones were heard or not.
-    pub(super) fn sound_checked(&mut self, answers: &Answers) -> bool {
-        let is_there = self.step().is_some_and(|step| step.kind == StepKind::Sound);
+    /// The script of the page has what it is for: tones were heard or not, the measuring was agreed to or not.
+    pub(super) fn page_scripted(&mut self, answers: &Answers) -> bool {
+        let is_there = self
+            .step()
+            .is_some_and(|step| matches!(step.kind, StepKind::Sound | StepKind::Mimicry));
         if is_there {
             self.finish_page(answers.clone(), false);
         }

@@ -105,8 +105,9 @@ pub enum Input {
     NoCard,
     /// How far the participant sits from the screen, centimetres.
     Distance(Option<f64>),
-    /// The sound check was gone through: its outcome is the answer `sound_check`, and what was counted stands beside it.
-    SoundChecked(Answers),
+    /// A page whose controls are a script's was gone through; its answers are those of the sound check, or of the consent
+    /// to measuring the face.
+    PageScripted(Answers),
     /// The level of the trial on the screen: body of [`crate::EventKind::LevelChosen`] or
     /// [`crate::EventKind::LevelsOver`].
     LevelChosen(Value),
@@ -167,7 +168,7 @@ impl Input {
             Self::CardWidth { .. } => "card_width",
             Self::NoCard => "no_card",
             Self::Distance(_) => "distance",
-            Self::SoundChecked(_) => "sound_checked",
+            Self::PageScripted(_) => "page_scripted",
             Self::LevelChosen(_) => "level_chosen",
             Self::LevelsAhead(_) => "levels_ahead",
             Self::PairsDrawn(_) => "pairs_drawn",

@@ -56,6 +56,6 @@ pub use view::{
     PanelView, Phase, ProgressView, RecordsView, SectionView, StageSize, TrialView, View,
 };
 pub use view_gate::{
-    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, SoundView,
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, ScriptedView,
 };
 pub use view_question::QuestionView;

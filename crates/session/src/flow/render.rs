@@ -105,7 +105,8 @@ impl Screen<'_> {
             StepKind::Calibration(calibration) => {
                 View::Calibration(Box::new(self.calibration(step, calibration)))
             }
-            StepKind::Sound => View::Sound(Box::new(self.sound(step))),
+            StepKind::Sound => View::Scripted(Box::new(self.sound(step))),
+            StepKind::Mimicry => View::Scripted(Box::new(self.mimicry(step))),
             StepKind::Feedback { of } => View::Feedback(Box::new(self.feedback(step, *of))),
             StepKind::Page(section) => {
                 let next = self.plan.step(self.state.record.step + 1);

@@ -7,7 +7,7 @@ use super::gate::{self, CARD_HEIGHT_MM, CARD_WIDTH_MM, DISTANCES_CM};
 use super::render::Screen;
 use super::view::{ClockView, StageSize};
 use super::view_gate::{
-    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, SoundView,
+    CalibrationView, CardView, DeviceView, DistanceView, FeedbackItem, FeedbackView, ScriptedView,
 };
 use crate::plan::Step;
 use crate::record::EndReason;
@@ -169,13 +169,24 @@ impl Screen<'_> {
         self.plan.study.sound_word(&self.state.record.language, name)
     }
 
-    pub(super) fn sound(&self, step: &Step) -> SoundView {
+    pub(super) fn sound(&self, step: &Step) -> ScriptedView {
         let text = ["sound_note", "sound_text"].map(|name| self.sound_word(name).to_owned());
-        SoundView {
+        ScriptedView {
             step: step.id.clone(),
             heading: self.sound_word("sound_heading").to_owned(),
             text: text.into_iter().filter(|text| !text.is_empty()).collect(),
             pages: self.plan.study.sound.to_string(),
+            progress: self.progress(),
+        }
+    }
+
+    pub(super) fn mimicry(&self, step: &Step) -> ScriptedView {
+        let word = |name| self.plan.study.mimicry_word(&self.state.record.language, name);
+        ScriptedView {
+            step: step.id.clone(),
+            heading: word("mimicry_heading").to_owned(),
+            text: word("mimicry_text").split("\n\n").map(str::to_owned).collect(),
+            pages: self.plan.study.mimicry.to_string(),
             progress: self.progress(),
         }
     }

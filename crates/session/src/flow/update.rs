@@ -106,7 +106,7 @@ impl<'a> Transition<'a> {
             }
             Input::NoCard => self.no_card(),
             Input::Distance(centimetres) => self.distance(*centimetres),
-            Input::SoundChecked(answers) => self.sound_checked(answers),
+            Input::PageScripted(answers) => self.page_scripted(answers),
             Input::LevelChosen(event) => self.level_chosen(event),
             Input::LevelsAhead(clips) => self.levels_ahead(clips),
             Input::PairsDrawn(event) => self.pairs_drawn(event),

@@ -2,7 +2,7 @@
 
 use super::agreement::AgreementView;
 use super::placed::PlacedClip;
-use super::view_gate::{CalibrationView, DeviceView, FeedbackView, SoundView};
+use super::view_gate::{CalibrationView, DeviceView, FeedbackView, ScriptedView};
 use super::view_question::QuestionView;
 
 /// What stands on the screen.
@@ -60,7 +60,7 @@ pub enum View {
     /// How large a CSS pixel is.
     Calibration(Box<CalibrationView>),
     /// Where the volume is set.
-    Sound(Box<SoundView>),
+    Scripted(Box<ScriptedView>),
     /// Which answers to a practice clip were right.
     Feedback(Box<FeedbackView>),
     /// A trial.

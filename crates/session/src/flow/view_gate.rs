@@ -80,16 +80,17 @@ pub struct DistanceView {
     pub problem: Option<String>,
 }
 
-/// Where the volume is set and the tones are counted (`static/sound/check.js`).
+/// A page whose controls are a script's: where the volume is set and the tones are counted (`static/sound/check.js`),
+/// where the measuring of the face is agreed to (`static/mimicry/check.js`).
 #[derive(Debug, Clone, PartialEq)]
-pub struct SoundView {
-    /// Identifier of the step.
+pub struct ScriptedView {
+    /// Identifier of the step: `sound`, `mimicry`.
     pub step: String,
     /// Heading.
     pub heading: String,
     /// Paragraphs below it.
     pub text: Vec<String>,
-    /// What the script gets: [`mimique_study::SoundPages`] as JSON.
+    /// What the script gets, as JSON: [`mimique_study::SoundPages`], [`mimique_study::MimicryPages`].
     pub pages: String,
     /// How far the session is.
     pub progress: ProgressView,

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::event::ChosenClips;
 use crate::panel::Panel;
+use crate::tracked_face::MIMICRY_STEP;
 use crate::wire::SessionStarted;
 use json_blocks::{as_json, json_trial};
 use mimique_study::text::{Words, words};
@@ -56,6 +57,8 @@ pub enum StepKind {
     Calibration(Calibration),
     /// Where the volume is set and tones are counted.
     Sound,
+    /// Where the measuring of the face is agreed to.
+    Mimicry,
     /// Which answers to the practice clip before were right.
     Feedback {
         /// Index of the trial's step.
@@ -239,6 +242,9 @@ fn before_training(study: &StudyProjection) -> Vec<Step> {
     }
     if !study.sound.is_null() {
         push("sound", StepKind::Sound);
+    }
+    if !study.mimicry.is_null() {
+        push(MIMICRY_STEP, StepKind::Mimicry);
     }
     steps
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use mimique_study::Answers;
 
 use crate::event::{Calibrated, Client, LevelShown, PlayLog, ShownBeside};
+use crate::tracked_face;
 
 /// The page or trial on the screen.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,7 +28,7 @@ pub struct Attempt {
     pub plays: u32,
     /// Whole plays before the page was opened again, by which the trial began anew.
     pub earlier_plays: u32,
-    /// The first whole play, without its frames: these are counted.
+    /// The first whole play, without its frames and the pictures of the participant's face: these are counted.
     pub play: Option<PlayLog>,
     /// Frames that the first whole play showed.
     pub frames: usize,
@@ -84,6 +85,7 @@ impl Attempt {
         self.answering_ms.get_or_insert(at_ms);
         if self.play.is_none() {
             self.frames = std::mem::take(&mut log.frames).len();
+            tracked_face::in_short(&mut log.mimicry);
             self.play = Some(log);
             self.play_fullscreen = fullscreen;
         }

@@ -122,6 +122,15 @@ fn play_cells(play: &PlayLog, attempt: &Attempt, opened_ms: f64, cells: &mut Cel
     let renderer = Some(play.renderer.as_str()).filter(|hash| !hash.is_empty());
     put("renderer", renderer.into());
     put("triggers_sent", play.triggers.into());
+    for (name, key) in [
+        ("mimicry_status", "status"),
+        ("mimicry_pictures", "frames"),
+        ("mimicry_faces", "faces"),
+        ("mimicry_clock", "clock"),
+        ("mimicry_model", "model"),
+    ] {
+        put(name, play.mimicry[key].clone());
+    }
     let Some(sound) = play.sound_log() else { return };
     let number = |ms: Option<f64>| ms.map_or(Value::Null, milliseconds);
     put("sound_status", sound.status.into());

@@ -15,10 +15,12 @@ use super::scaling::Scalings;
 use super::step_cells::{Cells, StepType};
 use super::study_columns::{assigned_column, conditions_of, factor_column, question_columns};
 use crate::record::{EarlyEnd, EndReason, FinishedStep, Record};
+use crate::tracked_face::MIMICRY_STEP;
 use crate::wire::SessionStarted;
 use mimique_study::columns::{
-    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS, SCALING_COLUMNS,
-    SOUND_COLUMNS, TRACE_COLUMN, TRAJECTORIES_COLUMN, TRIGGER_COLUMN, WEIGHTS_EXPECTED_COLUMN,
+    ASSIGNED_CONDITION, FIXED_COLUMNS, LEVEL_COLUMNS, MIMICRY_COLUMNS, PAIR_COLUMNS, PANEL_COLUMNS,
+    SCALING_COLUMNS, SOUND_COLUMNS, TRACE_COLUMN, TRAJECTORIES_COLUMN, TRIGGER_COLUMN,
+    WEIGHTS_EXPECTED_COLUMN,
 };
 use mimique_study::{
     Answers, Clip, ClipSource, KindOfQuestion as _, Multilingual as _, Question, Study, alike,
@@ -90,6 +92,9 @@ impl TidyForm {
             columns.push(column(fixed));
             if name == "beside_drift_ms" && has_sound {
                 columns.extend(SOUND_COLUMNS.map(column));
+            }
+            if name == "beside_drift_ms" && study.mimicry.is_some() {
+                columns.extend(MIMICRY_COLUMNS.map(column));
             }
             if name == "beside_drift_ms" && study.triggers.is_some() {
                 columns.push(column(TRIGGER_COLUMN));
@@ -237,7 +242,8 @@ impl TidyForm {
         cells.put("config_hash", started.config_hash.as_str().into());
         cells.put("language", record.language.as_str().into());
         cells.put("consent_version", record.consent_version.as_deref().into());
-        if let Some(page) = record.finished.iter().find(|step| step.id == "sound") {
+        let is_scripted = |step: &&FinishedStep| ["sound", MIMICRY_STEP].contains(&&*step.id);
+        for page in record.finished.iter().filter(is_scripted) {
             for (name, answer) in &page.answers {
                 cells.put(name, plain(Some(answer)));
             }

@@ -47,6 +47,8 @@ pub struct Page {
     pub display: Display,
     /// What its stage says of the sound of a play.
     pub sound: Value,
+    /// What it says of the participant's face.
+    pub mimicry: Value,
 }
 
 impl Page {
@@ -70,6 +72,7 @@ impl Page {
             completed: None,
             display: display(),
             sound: Value::Null,
+            mimicry: Value::Null,
         };
         page.send(Input::Opened(client()));
         page
@@ -109,8 +112,8 @@ impl Page {
                 self.played.extend(clips.into_iter().next().map(|placed| placed.clip));
                 let onset_ms = self.now_ms + 20.0;
                 self.now_ms += 2_000.0;
-                let sound = self.sound.clone();
-                self.send(Input::Played(PlayLog { sound, ..whole_play(onset_ms) }));
+                let (sound, mimicry) = (self.sound.clone(), self.mimicry.clone());
+                self.send(Input::Played(PlayLog { sound, mimicry, ..whole_play(onset_ms) }));
             }
             Effect::Complete { events } => {
                 self.completed = Some(events);
@@ -163,11 +166,11 @@ impl Page {
                 }
                 self.send(Input::Next);
             }
-            View::Sound(_) => {
+            View::Scripted(_) => {
                 let answers =
                     [("sound_check", json!(SOUND_HEARD)), ("sound_check_correct", json!(3))];
                 let answers = answers.map(|(name, value)| (name.to_owned(), value));
-                self.send(Input::SoundChecked(answers.into_iter().collect()));
+                self.send(Input::PageScripted(answers.into_iter().collect()));
             }
             View::Feedback(_) => self.send(Input::Next),
             View::Trial(trial) => match trial.phase {

@@ -14,6 +14,7 @@ pub(crate) mod intraclass_correlation;
 mod kendall;
 pub(crate) mod krippendorff;
 pub(crate) mod kruskal_wallis;
+pub(crate) mod lagged_correlation;
 pub(crate) mod mann_whitney;
 pub(crate) mod min_f;
 pub(crate) mod mixed_model;

@@ -90,7 +90,9 @@ fn translation(
     for (name, _) in own.iter().filter(|(_, text)| text.trim().is_empty()) {
         issues.error(below(&pointer, name), Problem::EmptyText);
     }
-    for fault in text::faults(language, own, subject.study.has_sound()) {
+    let study = subject.study;
+    let (sound, mimicry) = (study.has_sound(), study.mimicry.is_some());
+    for fault in text::faults(language, own, text::OptionalTexts { sound, mimicry }) {
         match fault {
             text::Fault::Unknown { name } => {
                 issues.error(

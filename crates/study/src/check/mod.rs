@@ -20,6 +20,7 @@ mod hypotheses;
 mod issue;
 mod levels;
 mod media;
+mod mimicry;
 mod nearest;
 mod pairs;
 mod panel;
@@ -171,6 +172,7 @@ fn examine_study(
     questions::examine(&subject, issues);
     conduct::examine(&subject, issues);
     media::examine(&subject, lookup, issues);
+    mimicry::examine(&subject, lookup, issues);
     stimuli::examine(&subject, lookup, issues);
     sound::examine(&subject, lookup, issues);
     sequence::examine(&subject, issues);

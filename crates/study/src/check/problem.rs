@@ -331,6 +331,10 @@ GazeAngle { degrees: f64, least: f64, most: f64 }: "out-of-range",
     "eyes do not turn by {degrees} degrees", "write degrees from {least} to {most}";
 GazeTarget: "bad-gaze", "only a capture of a file has a marker that the eyes look at",
     "give the gaze by held or file";
+NoKnownMotion: "no-known-motion", "every clip is a video: nothing is known of how its face moves",
+    "faces are measured, and the report has nothing to hold them against; add clips that are drawn, or remove this";
+MimicryNeedsServer: "mimicry-needs-server", "pages hosted as files do not measure participants' faces",
+    "serve the study by `mimique serve`: `mimique export-site` refuses it";
 NoSound: "no-sound", "no clip of this study has sound",
     "name the sound of a segment, \"sound\": {{ \"file\": \"joy.wav\" }}, or remove this";
 NoSoundFile: "bad-sound", "neither the segment nor its capture names a file of sound",

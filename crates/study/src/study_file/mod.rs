@@ -18,6 +18,7 @@ mod languages;
 mod local_text;
 mod media;
 mod method;
+mod mimicry;
 mod pairs;
 mod panel;
 mod paths;
@@ -62,6 +63,9 @@ pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
 pub use media::{MEDIA_PREFIX, media_type};
 pub use method::{MethodEntry, MethodTraining};
+pub use mimicry::{
+    MIMICRY_FILES, Mimicry, MimicryConsent, MimicryFile, MimicryPages, TRACKED_SHAPES,
+};
 pub use pairs::{DealtPairs, NoPairs, PairRule, PairSchedule, PairsBlock, PairsComponent};
 pub use panel::{PanelBlock, PanelComponent, PanelExclusion, PanelPage, PanelPages, answer_about};
 pub use paths::{PathError, WrongVariable, resolve_path};
@@ -140,6 +144,9 @@ pub struct Study {
     /// How participants meet the sound of clips: captions, and the page on which the volume is set.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sound: Option<SoundSection>,
+    /// The participant's face, measured in the page while clips play, with a consent of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mimicry: Option<Mimicry>,
     /// Trials for practice; their answers are marked `training`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub training: Option<Training>,

@@ -2,6 +2,7 @@
 //! here; a study file brings others (`translations`).
 
 mod counted;
+mod mimicry;
 mod sentences;
 mod sound;
 mod table;
@@ -13,9 +14,10 @@ use std::collections::BTreeMap;
 use std::borrow::Cow;
 
 pub use counted::{counted, counted_as, counted_in_french};
+pub use mimicry::mimicry_words;
 pub use sound::sound_words;
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
-pub use translation::{Fault, faults, names, template};
+pub use translation::{Fault, OptionalTexts, faults, names, template};
 pub use typography::typeset;
 
 /// Every fixed text of the pages in one language.

@@ -72,13 +72,22 @@ pub fn sound_words(
     language: &str,
     own: Option<&BTreeMap<String, String>>,
 ) -> BTreeMap<String, String> {
+    row_words(&SOUND, language, own)
+}
+
+/// Texts in a language, by name: those of rows of a name, English and French, where the study brings none of its own.
+pub(super) fn row_words(
+    rows: &[[&str; 3]],
+    language: &str,
+    own: Option<&BTreeMap<String, String>>,
+) -> BTreeMap<String, String> {
     let place = if primary_language(language) == "fr" { 2 } else { 1 };
     let word = |row: &[&str; 3]| {
         let built_in = row[place].to_owned();
         let own = own.and_then(|own| own.get(row[0])).cloned();
         (row[0].to_owned(), own.unwrap_or(built_in))
     };
-    SOUND.iter().map(word).collect()
+    rows.iter().map(word).collect()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::mimicry::MIMICRY;
 use super::sound::SOUND;
 use super::table::{ENGLISH, NAMES};
 use super::{primary_language, words};
@@ -25,9 +26,22 @@ pub enum Fault {
     Missing(Vec<&'static str>),
 }
 
+/// Which texts a study needs beside those that every study has.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct OptionalTexts {
+    /// Those on sound.
+    pub sound: bool,
+    /// Those on the measuring of the participant's face.
+    pub mimicry: bool,
+}
+
 /// Everything that is wrong with a translation, texts by name. English and French may be changed in
-/// part: nothing is missing there; nor are the texts on sound where the study has none.
-pub fn faults(language: &str, texts: &BTreeMap<String, String>, has_sound: bool) -> Vec<Fault> {
+/// part: nothing is missing there; nor are texts that the study does not need.
+pub fn faults(
+    language: &str,
+    texts: &BTreeMap<String, String>,
+    optional: OptionalTexts,
+) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (name, text) in texts {
         match built_in().find(|(known, _)| known == name) {
@@ -38,8 +52,9 @@ pub fn faults(language: &str, texts: &BTreeMap<String, String>, has_sound: bool)
             Some(_) => {}
         }
     }
-    let needed = NAMES.len() + if has_sound { SOUND.len() } else { 0 };
-    let needed = built_in().map(|(name, _)| name).take(needed);
+    let sound = SOUND.iter().map(|row| row[0]).filter(|_| optional.sound);
+    let mimicry = MIMICRY.iter().map(|row| row[0]).filter(|_| optional.mimicry);
+    let needed = NAMES.iter().copied().chain(sound).chain(mimicry);
     let missing = needed.filter(|name| !texts.contains_key(*name));
     let missing: Vec<&str> = missing.collect();
     let complete = words(language).language() == primary_language(language);
@@ -49,10 +64,10 @@ pub fn faults(language: &str, texts: &BTreeMap<String, String>, has_sound: bool)
     faults
 }
 
-/// Every text's name and what it is in English, those on sound at the end.
+/// Every text's name and what it is in English, those that not every study needs at the end.
 fn built_in() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let sound = SOUND.iter().map(|[name, english, _]| (*name, *english));
-    NAMES.iter().copied().zip(ENGLISH.iter().copied()).chain(sound)
+    let optional = SOUND.iter().chain(&MIMICRY).map(|[name, english, _]| (*name, *english));
+    NAMES.iter().copied().zip(ENGLISH.iter().copied()).chain(optional)
 }
 
 /// The words in braces, in alphabetical order, each once.
@@ -71,8 +86,8 @@ fn placeholders(text: &str) -> Vec<&str> {
 /// language nearest to it.
 pub fn template(language: &str) -> Vec<(&'static str, &'static str)> {
     let place = if primary_language(language) == "fr" { 2 } else { 1 };
-    let sound = SOUND.iter().map(|row| (row[0], row[place]));
-    NAMES.iter().copied().zip(words(language).built_in.iter().copied()).chain(sound).collect()
+    let optional = SOUND.iter().chain(&MIMICRY).map(|row| (row[0], row[place]));
+    NAMES.iter().copied().zip(words(language).built_in.iter().copied()).chain(optional).collect()
 }
 
 /// The names of the texts.
@@ -94,12 +109,14 @@ mod tests {
         }
     }
 
+    const ALL: OptionalTexts = OptionalTexts { sound: true, mimicry: true };
+
     #[test]
     fn faults_name_what_is_unknown_what_is_missing_and_braces_that_differ() {
         let texts = |pairs: &[(&str, &str)]| -> BTreeMap<String, String> {
             pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
         };
-        for [name, english, french] in SOUND {
+        for [name, english, french] in SOUND.into_iter().chain(MIMICRY) {
             assert_eq!(placeholders(english), placeholders(french), "{name}");
             assert!(!NAMES.contains(&name), "{name}");
         }
@@ -107,9 +124,9 @@ mod tests {
             .into_iter()
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
             .collect();
-        assert_eq!(faults("de", &whole, true), []);
+        assert_eq!(faults("de", &whole, ALL), []);
         let texts_of = texts(&[("trial_of", "Clip {nummer} von {of}"), ("nxt", "Weiter")]);
-        let found = faults("de", &texts_of, false);
+        let found = faults("de", &texts_of, OptionalTexts::default());
         let [Fault::Unknown { name }, Fault::Placeholders { name: other, english }, rest] =
             found.as_slice()
         else {
@@ -119,11 +136,11 @@ mod tests {
         assert_eq!(*english, "Clip {number} of {of}");
         let Fault::Missing(missing) = rest else { panic!("{rest:?}") };
         assert_eq!(missing.len(), NAMES.len() - 1);
-        // What is said of sound is needed where there is sound.
-        let found = faults("de", &texts_of, true);
-        let Some(Fault::Missing(with_sound)) = found.last() else { panic!("{found:?}") };
-        assert_eq!(with_sound.len(), missing.len() + SOUND.len());
+        // What is said of sound, and of faces, is needed where there is sound, or faces are measured.
+        let found = faults("de", &texts_of, ALL);
+        let Some(Fault::Missing(with_all)) = found.last() else { panic!("{found:?}") };
+        assert_eq!(with_all.len(), missing.len() + SOUND.len() + MIMICRY.len());
         // A word of English or French may be changed alone.
-        assert_eq!(faults("fr-CA", &texts(&[("play", "Jouer l’extrait")]), true), []);
+        assert_eq!(faults("fr-CA", &texts(&[("play", "Jouer l’extrait")]), ALL), []);
     }
 }

@@ -81,7 +81,12 @@ extern "C" {
     #[wasm_bindgen(js_name = download)]
     pub fn download(name: &str, text: &str);
 
-    /// Gives the sound check (an input), or the captions below a clip, their place.
+    /// Goes on measuring the participant's face after a reload; `pages`: JSON of what the study says of it, `camera`: the
+    /// answer `mimicry_camera`.
+    #[wasm_bindgen(js_name = openMimicry)]
+    pub fn open_mimicry(pages: &str, camera: &str);
+
+    /// Gives a page whose controls are a script's (its hidden input), or the captions below a clip, their place.
     #[wasm_bindgen(js_name = attachSound)]
     pub fn attach_sound(node: &Node);
 

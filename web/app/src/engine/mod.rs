@@ -97,6 +97,11 @@ impl Engine {
         if store.is_some() && !plan.study.triggers.is_null() {
             host::open_triggers(&plan.study.triggers.to_string());
         }
+        if store.is_some()
+            && let Some(camera) = state.record.answers.get("mimicry_camera").and_then(Value::as_str)
+        {
+            host::open_mimicry(&plan.study.mimicry.to_string(), camera);
+        }
         let connection = Connection { fleeting, ..Connection::default() };
         Rc::new(Self {
             plan,

@@ -23,7 +23,7 @@ pub fn header(engine: &Engine, view: &View) -> Vec<Element> {
             | View::Page { .. }
             | View::Device(_)
             | View::Calibration(_)
-            | View::Sound(_)
+            | View::Scripted(_)
             | View::Feedback(_)
             | View::Trial(_)
             | View::ReceiptPending { .. }

@@ -11,7 +11,7 @@ mod header;
 mod message;
 mod questions;
 mod read;
-mod sound;
+mod scripted;
 mod trial;
 
 use mimique_session::flow::{Input, ProgressView, View};
@@ -32,7 +32,7 @@ pub fn shape(view: &View, language: &str) -> String {
         View::Page { step, .. } => ("page", step.as_str()),
         View::Device(_) => ("device", ""),
         View::Calibration(_) => ("calibration", ""),
-        View::Sound(_) => ("sound", ""),
+        View::Scripted(shown) => (shown.step.as_str(), ""),
         View::Feedback(feedback) => ("feedback", feedback.step.as_str()),
         View::Trial(_) => ("trial", ""),
         View::ReceiptPending { .. } => ("receipt", ""),
@@ -51,7 +51,7 @@ pub fn step_of(view: &View) -> Option<&str> {
         }
         View::Device(gate) => Some(&gate.step),
         View::Calibration(shown) => Some(&shown.step),
-        View::Sound(shown) => Some(&shown.step),
+        View::Scripted(shown) => Some(&shown.step),
         View::Feedback(feedback) => Some(&feedback.step),
         View::Trial(trial) => Some(&trial.step),
         _ => None,
@@ -66,7 +66,7 @@ pub fn pages(engine: &Engine, view: &View, shape: &str, watched: &WatchedClip) -
         View::Page { .. } => read::read(view),
         View::Device(gate) => device::device(gate),
         View::Calibration(shown) => calibration::calibration(shown),
-        View::Sound(shown) => sound::sound(shown),
+        View::Scripted(shown) => scripted::scripted(shown),
         View::Feedback(feedback) => feedback::feedback(feedback),
         View::Trial(trial) => trial::trial(engine, trial, watched),
         View::ReceiptPending { heading, text, stored, total } => {

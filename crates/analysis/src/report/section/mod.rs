@@ -34,6 +34,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use crate::hypothesis::HypothesisResult;
 use crate::language::Language;
 use crate::language::naming::Naming;
+use crate::mimicry::tables::FaceTables;
 use crate::report::ReportFile;
 use crate::report::document::{Block, DataTable, Document, Figure};
 use crate::report::preview::Preview;
@@ -70,15 +71,24 @@ pub(crate) struct Writer<'a> {
     pub factors: Vec<String>,
     /// What was measured of the stimuli, where a table of it is given.
     pub stimuli: Option<&'a StimulusMeasures>,
+    /// What was measured of participants' faces, where tables of it are given.
+    pub faces_measured: Option<&'a FaceTables>,
     /// Where single clips are seen.
     pub preview: Option<Preview<'a>>,
+}
+
+/// What is given beside the export.
+#[derive(Clone, Copy)]
+pub(crate) struct Beside<'a> {
+    pub stimuli: Option<&'a StimulusMeasures>,
+    pub faces: Option<&'a FaceTables>,
 }
 
 /// Writes all sections.
 pub(crate) fn write(
     export: &Export,
     study: &Study,
-    stimuli: Option<&StimulusMeasures>,
+    beside: Beside<'_>,
     preview: Option<Preview<'_>>,
     language: Language,
 ) -> Sections {
@@ -96,7 +106,8 @@ pub(crate) fn write(
             ..Results::default()
         },
         factors: factors_in_use(export, study),
-        stimuli,
+        stimuli: beside.stimuli,
+        faces_measured: beside.faces,
         preview,
     };
     let asked = export.questions(study).into_iter();
@@ -181,6 +192,7 @@ fn of_measures<'a>(
     parts.push(Box::new(|part| part.agreement(measures)));
     parts.push(Box::new(|part| part.scales()));
     parts.push(Box::new(|part| part.stimulus_measures(measures)));
+    parts.push(Box::new(|part| part.mimicry()));
     parts.push(Box::new(|part| part.course_of_the_session(&over_time)));
     parts.push(Box::new(|part| part.timing()));
     parts

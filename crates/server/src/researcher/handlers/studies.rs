@@ -289,6 +289,10 @@ pub(crate) async fn export(
             let (id, bytes) = export::stimuli(&app.storage, Some(&study)).await?;
             (format!("{id}_stimuli.csv"), bytes)
         }
+        (None, "courses") => {
+            let (id, bytes) = export::courses(&app.storage, Some(&study)).await?;
+            (format!("{id}_courses.csv"), bytes)
+        }
         (None, "study") => {
             (format!("{study}.json"), export::study_file(&app.storage, &study).await?)
         }

@@ -27,7 +27,7 @@ pub(super) fn screen(frame: &Frame, view: &View) -> Screen {
             page(&device.heading, std::iter::once(device.text.clone()).chain(text).collect())
         }
         View::Calibration(calibration) => page(&calibration.heading, calibration.text.clone()),
-        View::Sound(sound) => page(&sound.heading, sound.text.clone()),
+        View::Scripted(sound) => page(&sound.heading, sound.text.clone()),
         View::Feedback(feedback) => self::feedback(feedback),
         View::Trial(trial) => self::trial(trial),
         View::ReceiptPending { heading, text, .. }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 use mimique_storage::{Overdue, Role};
+use mimique_study::Study;
 
 use crate::export::format::Format;
 use crate::researcher::pages::frame::{Frame, time};
@@ -92,19 +93,23 @@ pub(super) fn withdrawal(frame: &Frame, id: &str) -> Markup {
 }
 
 /// What is downloaded of a study, and its statistical report.
-pub(super) fn exports(frame: &Frame, id: &str) -> Markup {
+pub(super) fn exports(frame: &Frame, study: &Study) -> Markup {
+    let id = &study.id;
+    let measures_faces = study.mimicry.is_some();
     let label = |format| match format {
         Format::Csv => frame.say("Tidy CSV", "CSV long"),
         Format::Wide => frame.say("Wide CSV", "CSV large"),
         Format::Json => frame.say("JSON lines", "Lignes JSON"),
         Format::Events => frame.say("All events", "Tous les événements"),
+        Format::Tracks => frame.say("Measured faces", "Visages mesurés"),
         Format::PsychDs => "Psych-DS (ZIP)",
     };
     let base = format!("/researcher/studies/{id}");
     html! {
         h2 { (frame.say("Export", "Exporter")) }
         div.row {
-            @for format in Format::ALL {
+            @let shown = |format: &Format| measures_faces || *format != Format::Tracks;
+            @for format in Format::ALL.into_iter().filter(shown) {
                 a.button href={ (base) "/export/" (format.word()) } download { (label(format)) }
             }
             a.button href={ (base) "/export/dictionary" } download {
@@ -112,6 +117,11 @@ pub(super) fn exports(frame: &Frame, id: &str) -> Markup {
             }
             a.button href={ (base) "/export/stimuli" } download {
                 (frame.say("Stimuli and their measures", "Stimuli et leurs mesures"))
+            }
+            @if measures_faces {
+                a.button href={ (base) "/export/courses" } download {
+                    (frame.say("Courses of the clips", "Cours des extraits"))
+                }
             }
             a.button href={ (base) "/export/study" } download { (frame.say("Study file", "Fichier de l’étude")) }
             a.button.primary href={ (base) "/report/" (frame.language.code()) "/report.html" } {

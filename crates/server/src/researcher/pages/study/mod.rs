@@ -83,7 +83,7 @@ pub(crate) fn study_page(
         }
         @if frame.may(Role::Analyst) {
             div.card #export {
-                (exports(frame, id))
+                (exports(frame, study.study()))
                 @if frame.may(Role::Owner) { (withdrawal(frame, id)) }
                 @if frame.may(Role::Owner) && hosting.is_uploaded { (actions::hosting(frame, study)) }
             }
