@@ -91,7 +91,7 @@ fn readme() -> String {
          {SOFTWARE_REPOSITORY}.\n\n\
          To get this version:\n\n```sh\npip install mimique=={SOFTWARE_VERSION}\n```\n\n\
          or its archive for your system from {SOFTWARE_REPOSITORY}/releases, or from source:\n\n```sh\n\
-         git clone --branch v{SOFTWARE_VERSION} {SOFTWARE_REPOSITORY}\ncd mimique\ncargo xtask demo --no-serve\n```\n\n\
+         git clone {SOFTWARE_REPOSITORY}\ncd mimique\ngit checkout v{SOFTWARE_VERSION}\ncargo xtask demo --no-serve\n```\n\n\
          `Cargo.lock` names every crate that it is compiled from, with the SHA-256 of its archive; `sbom.cdx.json` says the\n\
          same as CycloneDX 1.5.\n"
     )

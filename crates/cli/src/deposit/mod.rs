@@ -14,8 +14,7 @@ use anyhow::{Context as _, anyhow, bail};
 use mimique_analysis::{Language, ReportOptions, analyze_with};
 use mimique_deposit::{
     About, Answers, Author, CODE_LICENCES, DATA_LICENCES, DepositFile, Judged, Licence, Parts,
-    Texts, deposit_files, is_day, licence_named, pack_hashes, personal,
-    stimulus_rows,
+    Texts, deposit_files, is_day, licence_named, pack_hashes, personal, stimulus_rows,
 };
 use mimique_stats::Table;
 use mimique_study::Study;

@@ -275,7 +275,7 @@ fn said(body: &Value) -> String {
 /// What to do about an answer that refuses.
 fn remedy(status: u16, to: &str) -> String {
     match status {
-        300..400 => format!("; it stands at {to} now: name that host by --host"),
+        300..=399 => format!("; it stands at {to} now: name that host by --host"),
         401 => "; the token is not known there: make one at this very host (those for trying have their own)".to_owned(),
         403 => "; the token may not do this: give it the right to write and to publish, or ask for it in the collection".to_owned(),
         413 => "; it is too large for the repository: leave the clips out by --no-stimuli, or ask for more".to_owned(),
