@@ -13,9 +13,10 @@ const STYLE: &str = "
 body { font: 1rem/1.5 system-ui, sans-serif; max-width: 52rem; margin: 0 auto; padding: 1.5rem 1rem 4rem; }
 h1 { font-size: 1.6rem; line-height: 1.25; }
 h2 { font-size: 1.15rem; margin: 2rem 0 .25rem; }
-dl { display: grid; grid-template-columns: max-content 1fr; gap: .25rem 1rem; }
-dt { color: var(--soft); }
 dd { margin: 0; overflow-wrap: anywhere; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .25rem 1rem; }
+@media (max-width: 36rem) { dl { display: block; } dd { margin-bottom: .5rem; } }
+dt { color: var(--soft); }
 p.about { color: var(--soft); margin: 0 0 .5rem; }
 details { border-top: 1px solid var(--line); padding: .5rem 0; }
 summary { cursor: pointer; }
@@ -78,7 +79,7 @@ fn facts(about: &About) -> Markup {
             dd { (about.version) ", deposited " (about.date) }
             dt { "Licence of the data" }
             dd { a href=(about.data_licence.address) { (about.data_licence.name) } }
-            dt { "Licence of the study file and the scripts" }
+            dt { "Licence of study file and scripts" }
             dd { a href=(about.code_licence.address) { (about.code_licence.name) } }
         }
     }

@@ -61,7 +61,8 @@ fn planted() -> (Study, BTreeMap<String, Column>, Responses) {
         &[
             ("participant_id", "p2"),
             ("response_id", "emotion"),
-            ("answer", "+33 6 12 34 56 78"),
+            ("answer", "fear"),
+            // Only in the second of the two cells that say the same.
             ("response", "+33 6 12 34 56 78"),
             ("note", "seat 4"),
             ("rt", "192.168.0.17"),

@@ -19,7 +19,7 @@ pub(super) fn words(finding: &Finding) -> String {
 
 /// Why nothing was written: every finding that nobody has answered.
 pub(super) fn refusal(place: &str, unanswered: &[Finding]) -> String {
-    let mut lines = vec![format!("{place}: what may say who somebody is is not answered")];
+    let mut lines = vec![format!("{place}: this may say who somebody is, and is not answered")];
     lines.extend(unanswered.iter().map(|finding| format!("  {}", words(finding))));
     let mut keys: Vec<&str> = unanswered.iter().map(|finding| &*finding.key).collect();
     keys.dedup();
@@ -66,9 +66,12 @@ fn ask(
 
 /// People who are told apart by what they said of themselves.
 pub(super) fn note_of_rare(rare: &Rare) -> String {
-    let people = counted_as(rare.alone, "participant is", "participants are");
+    let alone = match rare.alone {
+        1 => "1 participant is".to_owned(),
+        many => format!("{many} participants are each"),
+    };
     format!(
-        "{people} the only one of {} with this combination of answers about themselves ({}); leave columns out by --drop if \
+        "{alone} the only one of {} with this combination of answers about themselves ({}); leave columns out by --drop if \
          somebody could know them by it",
         rare.people,
         rare.columns.join(", ")

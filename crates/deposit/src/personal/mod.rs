@@ -5,7 +5,7 @@ mod answers;
 mod pattern;
 mod rare;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use mimique_session::rows::Column;
 use mimique_study::columns::{ColumnKind, EXCLUSION_COLUMNS};
@@ -100,26 +100,32 @@ pub fn personal(
         ["answer", "response"].iter().filter_map(|name| responses.column(name)).collect();
     for (place, name) in responses.columns().iter().enumerate() {
         let of_whole = kind_of_column(name, &written, &named, known);
+        // Most values stand in many rows.
+        let mut seen: HashMap<&str, Vec<Pattern>> = HashMap::new();
         for (row, cells) in responses.rows().iter().enumerate() {
-            let cell = &cells[place];
+            let cell = cells[place].as_str();
             if cell.is_empty() {
                 continue;
             }
-            if answers.contains(&place) {
-                // The second of the two says the same.
-                if answers.first() == Some(&place) {
-                    let question = asked.map_or("", |asked| &cells[asked]);
-                    found.answer(row, question, cell, written.contains(question));
-                }
+            let is_answer = answers.contains(&place);
+            // `response` says what `answer` says, but where somebody has changed one of them.
+            let is_repeated = is_answer && answers[0] != place && cells[answers[0]] == cell;
+            if is_repeated {
                 continue;
             }
-            if let Some(kind) = of_whole {
-                found.add(row, name, false, kind);
+            let question = asked.filter(|_| is_answer).map(|asked| cells[asked].as_str());
+            let key = question.unwrap_or(name);
+            let of_text = question.filter(|asked| written.contains(*asked));
+            if let Some(kind) = of_text.map(|_| Kind::FreeText).or(of_whole.filter(|_| !is_answer))
+            {
+                found.add(row, key, is_answer, kind);
             }
-            if of_whole != Some(Kind::RecruitmentIdentifier) && is_searched(name, known, cell) {
-                for pattern in patterns(cell) {
-                    found.add(row, name, false, Kind::Looks(pattern));
-                }
+            let is_left_out = of_whole == Some(Kind::RecruitmentIdentifier);
+            if is_left_out || !(is_answer || is_searched(name, known, cell)) {
+                continue;
+            }
+            for pattern in seen.entry(cell).or_insert_with(|| patterns(cell)) {
+                found.add(row, key, is_answer, Kind::Looks(*pattern));
             }
         }
     }
@@ -222,15 +228,6 @@ impl<'a> Found<'a> {
     fn new(file: &'a str, responses: &'a Responses) -> Self {
         let person = responses.column("participant_id");
         Self { file, responses, person, by_key: BTreeMap::new() }
-    }
-
-    fn answer(&mut self, row: usize, question: &str, cell: &str, is_written: bool) {
-        if is_written {
-            self.add(row, question, true, Kind::FreeText);
-        }
-        for pattern in patterns(cell) {
-            self.add(row, question, true, Kind::Looks(pattern));
-        }
     }
 
     fn add(&mut self, row: usize, key: &str, is_question: bool, kind: Kind) {
