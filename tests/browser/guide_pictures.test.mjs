@@ -1,12 +1,13 @@
-// The pictures of docs/guide/first-study.md: the page's own command makes its study, of the public head and take, which
-// is served and looked at. MIMIQUE_UPDATE_GOLDEN=1 writes the pictures anew; look at them before you keep them.
+// The pictures of the guide: of docs/guide/first-study.md, whose own command makes its study, of the public head and take,
+// which is served and looked at; of docs/guide/deposit.md, whose own commands make the folder. MIMIQUE_UPDATE_GOLDEN=1 writes the pictures anew; look at them before you keep them.
 
 import assert from "node:assert/strict";
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
+import { copyFileSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { test } from "node:test";
-import { executable, open, skip } from "./lib/browser.mjs";
+import { pathToFileURL } from "node:url";
+import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { taken } from "./lib/guide_picture.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
@@ -62,5 +63,37 @@ test("guide: the pictures of the first study", { skip: unable, timeout: 600_000 
   } finally {
     await browser.close();
     await server.stop();
+  }
+});
+
+test("guide: the page of a deposit, on a wide screen, a phone, and in the dark", { skip: skip(!executable && "Chromium not found"), timeout: 300_000 }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "mimique-deposit-"));
+  cpSync(join(root, "study-config"), join(folder, "study-config"), { recursive: true });
+  const text = readFileSync(join(root, "docs/guide/deposit.md"), "utf8");
+  const [, simulate] = /^\$ mimique (simulate .*)$/m.exec(text);
+  const [, deposit] = /^\$ mimique (deposit .* --drop start_time,end_time)$/m.exec(text);
+  for (const command of [simulate, deposit]) {
+    const words = [...command.matchAll(/"([^"]*)"|(\S+)/g)].map(([, quoted, word]) => quoted ?? word);
+    mimique(words, { cwd: folder });
+  }
+  const address = pathToFileURL(join(folder, "deposit/ro-crate-preview.html")).href;
+  const browser = await open("webgl2", { viewport: { width: 960, height: 800 } });
+  const { page } = browser;
+  try {
+    await page.goto(address);
+    await taken(page, "deposit-page.jpg");
+    const links = await page.$$eval("main a:not([href^=https])", (all) => all.map((link) => link.getAttribute("href")));
+    assert.ok(links.length > 30, `${links.length} files`);
+    for (const link of links) assert.ok(existsSync(join(folder, "deposit", decodeURIComponent(link))), link);
+    await page.setViewportSize({ width: 360, height: 740 });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= 360, `${wide} px on a phone`);
+    const shots = screenshotFolder("guide");
+    await page.screenshot({ path: join(shots, "deposit-phone.png") });
+    await page.emulateMedia({ colorScheme: "dark" });
+    await page.screenshot({ path: join(shots, "deposit-dark.png") });
+    assert.deepEqual(browser.errors, [], "the console is clean");
+  } finally {
+    await browser.close();
   }
 });

@@ -63,7 +63,7 @@ pub use power::{
     PowerPoint, PrecisionPoint, Rate, no_effect, power, power_csv, power_curve, power_markdown,
     power_runs, precision_csv, precision_markdown,
 };
-pub use preregistration::{Preregistration, preregistration};
+pub use preregistration::{Preregistration, as_predicted, preregistration};
 pub use report::{MeasuredFaces, Report, ReportFile, ReportOptions, analyze, analyze_with};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates,

@@ -2,8 +2,8 @@
 //! power of a test whose distribution is known.
 
 use mimique_analysis::{
-    Language, Parameters, Power, PowerOptions, PrecisionPoint, Preregistration, power,
-    power_markdown, power_runs, precision_csv, preregistration,
+    Language, Parameters, Power, PowerOptions, PrecisionPoint, Preregistration, as_predicted,
+    power, power_markdown, power_runs, precision_csv, preregistration,
 };
 use mimique_study::{StraightLining, Study};
 use serde_json::Value;
@@ -241,6 +241,55 @@ fn preregistration_says_what_the_file_says() {
         let read: Value = serde_json::from_str(json).unwrap();
         assert_eq!(read, serde_json::to_value(&parameters).unwrap());
     }
+}
+
+#[test]
+fn the_questions_of_aspredicted_are_answered_from_the_study_file() {
+    let (study, hash) = study("demo.json");
+    let parameters = Parameters::for_study(&study);
+    let power = power(&study, &hash, &parameters, &options(&[10], 4), &|| {}).unwrap();
+    let from = Preregistration {
+        study: &study,
+        config_hash: &hash,
+        power: &power,
+        parameters: &parameters,
+        language: Language::from_code("fr").unwrap(),
+        curve: Some("curve.svg"),
+    };
+    let text = as_predicted(&from);
+    let questions: Vec<&str> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("## ")?.split_once(')'))
+        .map(|(number, _)| number)
+        .collect();
+    assert_eq!(questions, ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11"]);
+    let field = |number: usize| {
+        let begin = text.find(&format!("## {number}) ")).unwrap();
+        let end = text.find(&format!("## {}) ", number + 1)).unwrap_or(text.len());
+        &text[begin..end]
+    };
+    for hypothesis in &study.hypotheses {
+        assert!(field(2).contains(hypothesis.statement.in_language("en")));
+        assert!(field(5).contains(&format!("- **{}**", hypothesis.id)));
+    }
+    for (number, part) in [
+        (1, "no data have been collected"),
+        (3, "- `believability`: "),
+        (4, "Each participant sees 12 trials."),
+        (4, "seed"),
+        (5, "Holm’s correction over the 4 hypotheses"),
+        (6, "people who do not finish"),
+        (6, "Nothing is imputed."),
+        (7, "Collection stops when"),
+        (8, "exploratory"),
+        (8, &*hash),
+        (9, study.study_metadata.title.in_language("en")),
+    ] {
+        assert!(field(number).contains(part), "{number}: {part}\n{text}");
+    }
+    assert!(!text.contains("curve.svg"), "its fields take text alone");
+    assert!(!text.contains("Échantillon") && !text.contains("personnes"), "it is English");
+    assert!(!text.contains("\n### "), "what stands in a field has no headings");
 }
 
 #[test]

@@ -7,12 +7,14 @@ mod account;
 mod analyze;
 mod annotate;
 mod arena;
+mod asker;
 mod backup;
 mod border_options;
 mod capsule;
 mod capture_options;
 mod check;
 mod compare;
+mod deposit;
 mod eaf_file;
 mod erase;
 mod exertion;
@@ -116,6 +118,8 @@ enum Command {
     Test(test_command::Args),
     /// Compute every table and figure of a study
     Analyze(analyze::Args),
+    /// Put together what a repository of research data takes of a study, and upload it to Zenodo or Dataverse
+    Deposit(Box<deposit::Args>),
     /// Show that this installation computes what cases with answers expect
     Verify(verify::Args),
 }
@@ -159,6 +163,7 @@ fn main() -> ExitCode {
         Command::Power(args) => power::run(args, json),
         Command::Test(args) => test_command::run(args, json),
         Command::Analyze(args) => analyze::run(args, json),
+        Command::Deposit(args) => deposit::run(*args, json),
         Command::Verify(args) => verify::run(args, json),
     };
     match outcome {

@@ -8,8 +8,8 @@ use std::time::Duration;
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_analysis::{
-    Language, Power, PowerOptions, Preregistration, no_effect, power, power_csv, power_curve,
-    power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
+    Language, Power, PowerOptions, Preregistration, as_predicted, no_effect, power, power_csv,
+    power_curve, power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
 };
 
 use crate::output;
@@ -50,9 +50,21 @@ pub struct Args {
     /// Write a preregistration to this file (markdown), its curve beside it
     #[arg(long)]
     preregistration: Option<PathBuf>,
+    /// Form of the preregistration: osf, or aspredicted, whose questions are answered in English
+    #[arg(long, value_name = "FORM", default_value = "osf", requires = "preregistration")]
+    form: Form,
     /// Language of tables, curve and preregistration: en or fr
     #[arg(long, default_value = "en", value_parser = language)]
     language: Language,
+}
+
+/// Form of a preregistration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Form {
+    /// The OSF's
+    Osf,
+    /// AsPredicted's
+    Aspredicted,
 }
 
 fn language(code: &str) -> Result<Language, String> {
@@ -93,7 +105,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     if let Some(path) = &args.preregistration {
         let figure = path.with_extension("svg");
         let name = figure.file_name().map(|name| name.to_string_lossy().into_owned());
-        let text = preregistration(&Preregistration {
+        let from = Preregistration {
             study: &study,
             config_hash: &config_hash,
             power: &power,
@@ -101,7 +113,11 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             language,
             // Without a hypothesis nothing is drawn.
             curve: name.as_deref().filter(|_| !power.points.is_empty()),
-        });
+        };
+        let text = match args.form {
+            Form::Osf => preregistration(&from),
+            Form::Aspredicted => as_predicted(&from),
+        };
         write(path.clone(), text)?;
         if !power.points.is_empty() {
             write(figure, curve)?;

@@ -15,14 +15,17 @@ use mimique_storage::durable_file;
 /// A folder that holds something else than a report, and what the operating system says.
 pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<Vec<String>> {
     check(out)?;
-    let pdfs = figures_as_pdf(files);
+    let all = with_pdfs(files);
     let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty());
     std::fs::create_dir_all(parent.unwrap_or(Path::new(".")))?;
-    let texts = files.iter().map(|file| (&file.path, file.text.as_bytes()));
-    let all: Vec<(&String, &[u8])> =
-        texts.chain(pdfs.iter().map(|(path, bytes)| (path, &**bytes))).collect();
     durable_file::write_folder(out, |folder| write_files(&all, folder))?;
-    Ok(all.into_iter().map(|(path, _)| path.clone()).collect())
+    Ok(all.into_iter().map(|(path, _)| path).collect())
+}
+
+/// The files of a report by their paths, the PDF of each figure behind them.
+pub fn with_pdfs(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
+    let texts = files.iter().map(|file| (file.path.clone(), file.text.clone().into_bytes()));
+    texts.chain(figures_as_pdf(files)).collect()
 }
 
 /// The PDF of each figure, by its path.
@@ -59,13 +62,13 @@ pub fn sentence(text: &str) -> String {
     format!("{first}{}.", letters.as_str())
 }
 
-fn write_files(files: &[(&String, &[u8])], folder: &Path) -> anyhow::Result<()> {
+fn write_files(files: &[(String, Vec<u8>)], folder: &Path) -> anyhow::Result<()> {
     for (name, bytes) in files {
         let path = folder.join(name);
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent)?;
         }
-        std::fs::write(&path, bytes).with_context(|| (*name).clone())?;
+        std::fs::write(&path, bytes).with_context(|| name.clone())?;
     }
     Ok(())
 }

@@ -15,9 +15,27 @@ use crate::language::naming::Naming;
 use crate::simulate::{factor_levels, traits};
 
 pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
-    let (language, study) = (from.language, from.study);
     text.heading(2, "Analysis plan", "Plan d’analyse");
     text.heading(3, "Statistical models", "Modèles statistiques");
+    models(text, from, naming);
+    text.heading(3, "Transformations", "Transformations");
+    text.both(
+        "None, beyond the means a person and level above. Ratings are used as coded on the scale.",
+        "Aucune, au-delà des moyennes par personne et niveau ci-dessus. Les notes sont utilisées telles que codées sur l’échelle.",
+    );
+    text.heading(3, "Inference criteria", "Critères d’inférence");
+    criteria(text, from);
+    text.heading(3, "Data exclusion", "Exclusion de données");
+    data_exclusion(text, from);
+    text.heading(3, "Missing data", "Données manquantes");
+    missing_data(text);
+    text.heading(3, "Exploratory analysis", "Analyses exploratoires");
+    exploratory(text);
+}
+
+/// The test of each hypothesis, and what blocks tell that no hypothesis tests.
+pub(super) fn models(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+    let study = from.study;
     for hypothesis in &study.hypotheses {
         model(text, from, naming, hypothesis);
     }
@@ -29,12 +47,11 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
         "All are computed by `mimique analyze` on the export, with this study file.",
         "Tous sont calculés par `mimique analyze` sur l’export, avec ce fichier d’étude.",
     );
-    text.heading(3, "Transformations", "Transformations");
-    text.both(
-        "None, beyond the means a person and level above. Ratings are used as coded on the scale.",
-        "Aucune, au-delà des moyennes par personne et niveau ci-dessus. Les notes sont utilisées telles que codées sur l’échelle.",
-    );
-    text.heading(3, "Inference criteria", "Critères d’inférence");
+}
+
+/// When a test is positive.
+pub(super) fn criteria(text: &mut Text, from: &Preregistration<'_>) {
+    let (language, study) = (from.language, from.study);
     let count = study.hypotheses.len();
     let alpha = language.number(from.power.alpha);
     let words = language.pick(
@@ -44,8 +61,11 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
     text.line(&words);
     text.line("");
     equivalence::criteria(text, study);
-    text.heading(3, "Data exclusion", "Exclusion de données");
-    for rule in exclusions(from, language) {
+}
+
+/// Which people and trials are left out.
+pub(super) fn data_exclusion(text: &mut Text, from: &Preregistration<'_>) {
+    for rule in exclusions(from, from.language) {
         text.line(&format!("- {rule}"));
     }
     text.line("");
@@ -53,12 +73,18 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
         "Each exclusion is counted by its reason in the report’s flow chart. There are no others.",
         "Chaque exclusion est comptée par motif dans le diagramme de flux du rapport. Il n’y en a pas d’autre.",
     );
-    text.heading(3, "Missing data", "Données manquantes");
+}
+
+/// What becomes of people without a value.
+pub(super) fn missing_data(text: &mut Text) {
     text.both(
         "A person without a value at every level that a test compares is left out of that test and counted. Nothing is imputed.",
         "Une personne sans valeur à chacun des niveaux qu’un test compare est écartée de ce test et comptée. Rien n’est imputé.",
     );
-    text.heading(3, "Exploratory analysis", "Analyses exploratoires");
+}
+
+/// What is not tested.
+pub(super) fn exploratory(text: &mut Text) {
     text.both(
         "Everything else in the report (confusion matrices, other factors, response times, order and fatigue, late frames) is exploratory and will be called so. With one clip for a combination of performance and method, tests of person means are about these clips: they do not generalise to other performances.",
         "Tout le reste du rapport (matrices de confusion, autres facteurs, temps de réponse, ordre et fatigue, images en retard) est exploratoire et sera présenté comme tel. Avec un seul extrait par combinaison de performance et de méthode, les tests sur les moyennes des personnes portent sur ces extraits : ils ne se généralisent pas à d’autres performances.",

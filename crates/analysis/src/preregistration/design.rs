@@ -25,15 +25,16 @@ pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming
         "Participants are not told by which method a clip was made, nor what is compared, before the last answer. Analyses are computed by a program fixed beforehand.",
         "Les participants ne savent ni par quelle méthode un extrait a été produit, ni ce qui est comparé, avant la dernière réponse. Les analyses sont calculées par un programme fixé d’avance.",
     );
+    text.heading(3, "Study design", "Plan");
     plan(text, from, naming);
+    text.heading(3, "Randomization", "Tirage au sort");
     randomization(text, from, naming);
 }
 
 /// What is shown to whom.
-fn plan(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+pub(super) fn plan(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
     let (language, study) = (from.language, from.study);
     let clips = study.clips();
-    text.heading(3, "Study design", "Plan");
     let conditions = study.conditions();
     let trials = trials_in(study, &study.sequence, &clips, None);
     let sampled = samples(&study.sequence);
@@ -120,10 +121,9 @@ fn trials_in_words(
 }
 
 /// How orders and conditions are drawn.
-fn randomization(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+pub(super) fn randomization(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
     let (language, study) = (from.language, from.study);
     let conditions = study.conditions();
-    text.heading(3, "Randomization", "Tirage au sort");
     if !conditions.is_empty() {
         text.both(
             "A participant’s condition is the one that the invitation’s address names (`?condition=`); without one, that in which the fewest have finished or are on their way, drawn where several have as few.",
@@ -149,9 +149,18 @@ fn randomization(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_
 }
 
 pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
-    let (language, study) = (from.language, from.study);
     text.heading(2, "Variables", "Variables");
     text.heading(3, "Manipulated variables", "Variables manipulées");
+    manipulated(text, from, naming);
+    text.heading(3, "Measured variables", "Variables mesurées");
+    asked(text, from);
+    text.heading(3, "Indices", "Indices");
+    indices(text, from.study);
+}
+
+/// What is varied.
+pub(super) fn manipulated(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
+    let (language, study) = (from.language, from.study);
     let clips = study.clips();
     let about = crate::simulate::traits(study);
     let tested =
@@ -196,7 +205,11 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
     levels::design(text, study, language);
     scaling::design(text, study, language);
     faces::design(text, study, language);
-    text.heading(3, "Measured variables", "Variables mesurées");
+}
+
+/// What is asked and recorded.
+pub(super) fn asked(text: &mut Text, from: &Preregistration<'_>) {
+    let (language, study) = (from.language, from.study);
     text.both("After each clip:", "Après chaque extrait :");
     let asked: Vec<String> = blocks(study).flat_map(|block| block.questions.clone()).collect();
     let is_asked = |id: &String| asked.contains(id) || study.is_asked_of_no_clip(id);
@@ -216,7 +229,10 @@ pub(super) fn variables(text: &mut Text, from: &Preregistration<'_>, naming: &Na
         "Recorded with each trial: response time (from the first frame of the first whole play to the last change of the answer), replays, late frames, the longest frame, interruptions.",
         "Enregistrés à chaque essai : temps de réponse (de la première image de la première lecture complète au dernier changement de la réponse), relectures, images en retard, image la plus longue, interruptions.",
     );
-    text.heading(3, "Indices", "Indices");
+}
+
+/// What is made of the answers before they are tested.
+pub(super) fn indices(text: &mut Text, study: &Study) {
     text.both(
         "For each participant, response and level: the mean of the answers over the trials kept; for a choice with a right answer the share of right answers; for a response time its mean in seconds. These values, one a person and level, are what is tested.",
         "Pour chaque participant, réponse et niveau : la moyenne des réponses sur les essais gardés ; pour un choix à bonne réponse, la proportion de bonnes réponses ; pour un temps de réponse, sa moyenne en secondes. Ce sont ces valeurs, une par personne et niveau, qui sont testées.",

@@ -1,9 +1,10 @@
 //! A preregistration written from the study file: hypotheses, design, sample, variables, analysis and
-//! exclusions, in the order of the OSF's form, with the power that the sample has.
+//! exclusions, in the order of the OSF's form, with the power that the sample has; or by the questions of AsPredicted.
 //!
 //! What only the researcher knows (whether data exist already, who recruits) stands in square brackets.
 
 mod analysis;
+mod as_predicted;
 mod design;
 mod equivalence;
 mod faces;
@@ -14,6 +15,7 @@ mod scaling;
 
 use std::fmt::Write;
 
+pub use as_predicted::as_predicted;
 use mimique_study::Study;
 
 use crate::language::Language;
@@ -69,6 +71,19 @@ pub fn preregistration(from: &Preregistration<'_>) -> String {
     text.line(meta.description.in_language(code));
     text.line("");
     text.heading(3, "Hypotheses", "Hypothèses");
+    hypotheses(&mut text, from);
+
+    design::write(&mut text, from, &naming);
+    sample(&mut text, from);
+    design::variables(&mut text, from, &naming);
+    analysis::write(&mut text, from, &naming);
+    simulation(&mut text, from);
+    text.text
+}
+
+/// What is tested, in the study's own words.
+fn hypotheses(text: &mut Text, from: &Preregistration<'_>) {
+    let code = from.language.code();
     for hypothesis in &from.study.hypotheses {
         text.line(&format!("- **{}.** {}", hypothesis.id, hypothesis.statement.in_language(code)));
     }
@@ -84,13 +99,6 @@ pub fn preregistration(from: &Preregistration<'_>) -> String {
         "Chaque énoncé dit qu’il n’y a pas de différence ; les tests sont bilatéraux, une différence dans un sens ou dans l’autre parle contre lui. [Si vous attendez un sens, dites-le ici.]",
     );
     }
-
-    design::write(&mut text, from, &naming);
-    sample(&mut text, from);
-    design::variables(&mut text, from, &naming);
-    analysis::write(&mut text, from, &naming);
-    simulation(&mut text, from);
-    text.text
 }
 
 /// Markdown in one language.
@@ -134,15 +142,18 @@ fn sample(text: &mut Text, from: &Preregistration<'_>) {
         "[Registration prior to creation of data: no answer has been collected when this is registered. Change this if it is not so.]",
         "[Enregistrement avant la création des données : aucune réponse n’a été recueillie au moment de l’enregistrement. Modifiez si ce n’est pas le cas.]",
     );
+    text.heading(3, "Data collection", "Recueil des données");
     collection(text, from);
+    text.heading(3, "Sample size", "Taille de l’échantillon");
     size(text, from);
+    text.heading(3, "Rationale", "Justification");
     rationale(text, from);
+    text.heading(3, "Stopping rule", "Règle d’arrêt");
     stopping_rule(text, from);
 }
 
 fn collection(text: &mut Text, from: &Preregistration<'_>) {
     let language = from.language;
-    text.heading(3, "Data collection", "Recueil des données");
     let study = from.study;
     let mut words = language.pick(
         format!(
@@ -180,7 +191,6 @@ fn collection(text: &mut Text, from: &Preregistration<'_>) {
 
 fn size(text: &mut Text, from: &Preregistration<'_>) {
     let language = from.language;
-    text.heading(3, "Sample size", "Taille de l’échantillon");
     match wanted(from) {
         Some(number) => {
             let line = language.pick(
@@ -199,7 +209,6 @@ fn size(text: &mut Text, from: &Preregistration<'_>) {
 
 fn rationale(text: &mut Text, from: &Preregistration<'_>) {
     let (language, study) = (from.language, from.study);
-    text.heading(3, "Rationale", "Justification");
     let line = language.pick(
         format!(
             "Power was found by simulation: whole studies were simulated with the parameters at the end of this text ({} a point, seed {}), with dropout and careless answers, and analysed exactly as below at α = {}.",
@@ -248,7 +257,6 @@ fn rationale(text: &mut Text, from: &Preregistration<'_>) {
 
 fn stopping_rule(text: &mut Text, from: &Preregistration<'_>) {
     let language = from.language;
-    text.heading(3, "Stopping rule", "Règle d’arrêt");
     let line = match wanted(from) {
         Some(number) => language.pick(
             format!("Collection stops when {number} people have completed the study and passed the rules on people below. No test is computed before."),

@@ -118,7 +118,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
 }
 
 /// The study of a file without errors; its warnings are printed.
-pub fn checked_study(file: &Path) -> anyhow::Result<CheckedStudy> {
+pub(crate) fn checked_study(file: &Path) -> anyhow::Result<CheckedStudy> {
     let report = check_file(file)?;
     let mut problems = Vec::new();
     for issue in &report.issues {

@@ -5,10 +5,10 @@ use std::io::{BufRead, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::bail;
 use mimique_new_study::{designs, instruments};
 
 use super::{Args, Cut};
+use crate::asker::Asker;
 use crate::solve::Span;
 
 /// Asks for what the options leave open.
@@ -17,7 +17,7 @@ pub(super) fn ask(
     input: &mut impl BufRead,
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
-    let mut asker = Asker { input, out };
+    let mut asker = Asker { input, out, command: "mimique new" };
     let designs = designs()?;
     for (number, (name, about)) in designs.iter().enumerate() {
         writeln!(asker.out, "  {}  {name}: {about}", number + 1)?;
@@ -90,50 +90,4 @@ fn capture<R: BufRead, W: Write>(
         }
     }
     Ok(())
-}
-
-struct Asker<'a, R, W> {
-    input: &'a mut R,
-    out: &'a mut W,
-}
-
-impl<R: BufRead, W: Write> Asker<'_, R, W> {
-    /// An answer as it is typed, without the spaces around it.
-    fn line(&mut self, question: &str) -> anyhow::Result<String> {
-        write!(self.out, "{question}: ")?;
-        self.out.flush()?;
-        let mut answer = String::new();
-        if self.input.read_line(&mut answer)? == 0 {
-            writeln!(self.out)?;
-            bail!(
-                "{question}: there is no answer; answer it, or give options (mimique new --help)"
-            );
-        }
-        Ok(answer.trim().to_owned())
-    }
-
-    fn optional(&mut self, question: &str) -> anyhow::Result<Option<String>> {
-        Ok(Some(self.line(question)?).filter(|answer| !answer.is_empty()))
-    }
-
-    fn list(&mut self, question: &str) -> anyhow::Result<Vec<String>> {
-        let answer = self.line(question)?;
-        let parts = answer.split(',').map(|part| part.trim().to_owned());
-        Ok(parts.filter(|part| !part.is_empty()).collect())
-    }
-
-    /// Asks until the answer can be read.
-    fn until<T>(
-        &mut self,
-        question: &str,
-        read: impl Fn(&str) -> Result<T, String>,
-    ) -> anyhow::Result<T> {
-        loop {
-            let answer = self.line(question)?;
-            match read(&answer) {
-                Ok(value) => return Ok(value),
-                Err(why) => writeln!(self.out, "{answer:?}: {why}")?,
-            }
-        }
-    }
 }

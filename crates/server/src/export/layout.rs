@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 
 use mimique_session::Record;
-use mimique_session::rows::{Column, TidyForm, WideForm};
+use mimique_session::rows::{Column, TidyForm, WideForm, exclusion_columns};
 use mimique_session::wire::SessionStarted;
-use mimique_study::columns::{ColumnKind, EXCLUSION_COLUMNS};
+use mimique_study::columns::ColumnKind;
 use serde_json::Value;
 
 use super::csv::{self, Cells};
@@ -185,21 +185,9 @@ fn add_columns(columns: &mut Vec<Column>, more: impl IntoIterator<Item = Column>
 }
 
 fn identifier_column(name: &str) -> Column {
-    text_column(name, "Recruitment identifier")
-}
-
-/// Whether the researcher excluded the participant, and why.
-fn exclusion_columns() -> [Column; 2] {
-    let [excluded, reason] = EXCLUSION_COLUMNS;
-    let about = "Whether the researcher excluded the participant; every answer is kept";
-    let excluded = Column { kind: ColumnKind::Boolean, ..text_column(excluded, about) };
-    [excluded, text_column(reason, "Why the researcher excluded the participant")]
-}
-
-fn text_column(name: &str, description: &str) -> Column {
     Column {
         name: name.to_owned(),
-        description: description.to_owned(),
+        description: "Recruitment identifier".to_owned(),
         kind: ColumnKind::Text,
         unit: None,
         levels: Vec::new(),

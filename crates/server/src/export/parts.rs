@@ -142,6 +142,6 @@ pub(super) fn main_file(format: Format, study_id: &str) -> String {
         Format::Json => format!("{study_id}_responses.jsonl"),
         Format::Events => format!("{study_id}_events.jsonl"),
         Format::Tracks => format!("{study_id}_tracks.csv"),
-        Format::PsychDs => psych_ds::data_file(study_id),
+        Format::PsychDs => mimique_session::rows::psych_ds_data_file(study_id),
     }
 }

@@ -7,11 +7,6 @@ use super::error::ExportError;
 use super::sources::Sources;
 use super::stimuli;
 
-/// Where the tidy table stands in the data set.
-pub(super) fn data_file(study_id: &str) -> String {
-    format!("data/study-{}_data.csv", keyword(study_id))
-}
-
 /// The files beside the table, by their paths in the data set. The table has these columns, and rows of so many
 /// participants, so many in all.
 pub(super) fn explaining(
@@ -29,7 +24,7 @@ pub(super) fn explaining(
         ("README.md".to_owned(), readme(sources, counts)?.into_bytes()),
         ("dataset_description.json".to_owned(), description),
     ];
-    let name = keyword(&sources.study_id);
+    let name = rows::psych_ds_keyword(&sources.study_id);
     files.push((format!("materials/study-{name}_stimuli.csv"), stimuli::table(sources)?));
     for version in &sources.versions {
         let short = &version.config_hash[..version.config_hash.len().min(12)];
@@ -37,11 +32,6 @@ pub(super) fn explaining(
         files.push((format!("materials/study-{name}_version-{short}.json"), text));
     }
     Ok(files)
-}
-
-/// Values of Psych-DS keywords are letters and digits.
-fn keyword(study_id: &str) -> String {
-    study_id.chars().filter(char::is_ascii_alphanumeric).collect()
 }
 
 fn readme(sources: &Sources, (participants, rows): (usize, usize)) -> Result<String, ExportError> {

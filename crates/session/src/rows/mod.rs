@@ -24,7 +24,8 @@ mod tidy;
 mod wide;
 
 pub use column::{Column, Table};
-pub use psych_ds::psych_ds_description;
+pub use psych_ds::{psych_ds_data_file, psych_ds_description, psych_ds_keyword};
+pub use study_columns::exclusion_columns;
 pub use tidy::{TidyForm, tidy};
 pub use wide::{WideForm, wide};
 

@@ -6,6 +6,16 @@ use super::column::Table;
 use mimique_study::columns::ColumnKind;
 use mimique_study::{Multilingual as _, Study};
 
+/// Where the tidy table of a study stands in the data set.
+pub fn psych_ds_data_file(study_id: &str) -> String {
+    format!("data/study-{}_data.csv", psych_ds_keyword(study_id))
+}
+
+/// Values of Psych-DS keywords are letters and digits.
+pub fn psych_ds_keyword(study_id: &str) -> String {
+    study_id.chars().filter(char::is_ascii_alphanumeric).collect()
+}
+
 /// The dataset description of an export: title, authors, and
 /// `variableMeasured` for every column of the table.
 pub fn psych_ds_description(study: &Study, table: &Table) -> Value {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind};
+use mimique_study::columns::{ASSIGNED_CONDITION, ColumnKind, EXCLUSION_COLUMNS};
 use mimique_study::{Choice, KindOfQuestion as _, Question, Sequence, SequenceItem, Study};
 use serde_json::Value;
 
@@ -53,6 +53,14 @@ pub(super) fn assigned_column(study: &Study) -> Option<Column> {
     let mut column = Column::new(ASSIGNED_CONDITION, ColumnKind::Text, description);
     column.levels = conditions.iter().map(|name| ((*name).into(), String::new())).collect();
     (!conditions.is_empty()).then_some(column)
+}
+
+/// Whether the researcher excluded the participant, and why: behind the columns of the tidy and of the wide form.
+pub fn exclusion_columns() -> [Column; 2] {
+    let [excluded, reason] = EXCLUSION_COLUMNS;
+    let about = "Whether the researcher excluded the participant; every answer is kept";
+    let why = "Why the researcher excluded the participant";
+    [Column::new(excluded, ColumnKind::Boolean, about), Column::new(reason, ColumnKind::Text, why)]
 }
 
 /// Participant's condition and component -> identifier of the nearest sequence that has one.
