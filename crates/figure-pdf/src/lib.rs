@@ -89,8 +89,7 @@ impl FigurePdf {
     pub fn of_svg(&self, name: &str, svg: &str) -> Result<Vec<u8>, FigurePdfError> {
         let no_svg = |why: &dyn ToString| FigurePdfError::NoSvg(why.to_string());
         let parsed = roxmltree::Document::parse(svg).map_err(|error| no_svg(&error))?;
-        let tree =
-            Tree::from_xmltree(&parsed, &self.options).map_err(|error| no_svg(&error))?;
+        let tree = Tree::from_xmltree(&parsed, &self.options).map_err(|error| no_svg(&error))?;
         let mut missing = BTreeSet::new();
         collect_missing(tree.root(), &mut missing);
         if !missing.is_empty() {

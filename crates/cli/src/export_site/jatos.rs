@@ -94,5 +94,12 @@ fn plain(text: &str) -> String {
 /// A UUID of version 8 (RFC 9562, section 5.8) that a text alone makes.
 fn uuid(text: &str) -> String {
     let hash = sha256_hex(text.as_bytes());
-    format!("{}-{}-8{}-a{}-{}", &hash[..8], &hash[8..12], &hash[13..16], &hash[17..20], &hash[20..32])
+    format!(
+        "{}-{}-8{}-a{}-{}",
+        &hash[..8],
+        &hash[8..12],
+        &hash[13..16],
+        &hash[17..20],
+        &hash[20..32]
+    )
 }

@@ -72,7 +72,13 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let hosted = HostedStudy::new(checked.value().clone(), prepared.clips, stage)?;
 
     // Written beside and moved into place: a site is whole or absent.
-    let site = Exported { assets: &assets, study: checked.study(), hosted: &hosted, stage, packs: &args.packs };
+    let site = Exported {
+        assets: &assets,
+        study: checked.study(),
+        hosted: &hosted,
+        stage,
+        packs: &args.packs,
+    };
     let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty());
     let parent = parent.unwrap_or(Path::new("."));
     std::fs::create_dir_all(parent).with_context(|| parent.display().to_string())?;
@@ -103,7 +109,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         let study = args.study.display();
         writeln!(out, "  import it in JATOS: Studies, Import study")?;
         writeln!(out, "  every answer is appended to the result of its run as it comes")?;
-        writeln!(out, "  read what JATOS exports (data only, or the archive) with: mimique import {study} FILES")?;
+        writeln!(
+            out,
+            "  read what JATOS exports (data only, or the archive) with: mimique import {study} FILES"
+        )?;
         return Ok(());
     }
     writeln!(out, "  put the folder on any web host (https) and open its index.html there")?;
@@ -139,7 +148,10 @@ fn is_free(args: &Args) -> anyhow::Result<()> {
     if args.jatos {
         let is_archive = args.out.extension().is_some_and(|end| end == "jzip");
         anyhow::ensure!(is_archive, "{place}: JATOS imports archives; write --out NAME.jzip");
-        anyhow::ensure!(!args.out.exists(), "{place}: there is such a file; choose another by --out");
+        anyhow::ensure!(
+            !args.out.exists(),
+            "{place}: there is such a file; choose another by --out"
+        );
         return Ok(());
     }
     let taken = std::fs::read_dir(&args.out).is_ok_and(|mut entries| entries.next().is_some());

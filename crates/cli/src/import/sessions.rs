@@ -100,7 +100,9 @@ fn texts(path: &Path) -> anyhow::Result<Vec<(String, String)>> {
         return archived(&bytes).with_context(|| at);
     }
     let text = String::from_utf8(bytes)
-        .map_err(|error| anyhow::anyhow!("is not text ({error}); give what was posted or downloaded"))
+        .map_err(|error| {
+            anyhow::anyhow!("is not text ({error}); give what was posted or downloaded")
+        })
         .with_context(|| at.clone())?;
     Ok(vec![(at, text)])
 }

@@ -230,8 +230,7 @@ pub async fn an_exclusion_is_in_export_and_report(server: &TestServer) {
     let archive = owner.open(server, &format!("{report}/report.zip")).await;
     assert_eq!(archive.header(header::CONTENT_TYPE), "application/zip");
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(&*archive.body)).unwrap();
-    let names: Vec<String> =
-        archive.file_names().map(|name| name.unwrap().into_owned()).collect();
+    let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
     let svgs = names.iter().filter(|name| name.ends_with(".svg"));
     let pdfs: Vec<String> = svgs.map(|name| name.replace(".svg", ".pdf")).collect();
     assert!(!pdfs.is_empty() && pdfs.iter().all(|pdf| names.contains(pdf)), "{names:?}");
