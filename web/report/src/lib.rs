@@ -52,7 +52,7 @@ pub fn analyze(
         text => Some(Table::parse(text)?),
     };
     let preview = (!preview.is_empty()).then_some(preview);
-    let options = ReportOptions { stimuli: stimuli.as_ref(), preview };
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces: None, preview };
     let language = Language::from_code(language)
         .ok_or_else(|| JsError::new(&format!("{language}: reports are written in en or fr")))?;
     let report = analyze_with(&table, &study, language, options)?;

@@ -237,7 +237,9 @@ impl Capsule<'_> {
         let table = Table::parse(csv)?;
         let shown = !self.study().clips().is_empty();
         let stimuli = shown.then(|| Table::parse(stimuli)).transpose()?;
-        let options = ReportOptions { stimuli: stimuli.as_ref(), preview: Some(READER) };
+        // What was measured of faces says much of a person, and is not shared.
+        let options =
+            ReportOptions { stimuli: stimuli.as_ref(), faces: None, preview: Some(READER) };
         analyze_with(&table, self.study(), self.args.language, options)
             .with_context(|| self.args.export.display().to_string())
     }
