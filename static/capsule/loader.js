@@ -135,6 +135,8 @@ const beginWorker = (scope, makeCapsule) => {
   const NativeWorker = globalThis.Worker;
   const text = `(${beginWorker})(self, ${makeCapsule})`;
   globalThis.Worker = class extends NativeWorker {
+    /// Addresses of other hosts too: it finds them here (module-worker.js asks).
+    static anyHost = true;
     #ready = null;
 
     constructor(address, options) {
