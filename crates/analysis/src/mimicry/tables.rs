@@ -152,7 +152,7 @@ fn read_courses(table: &Table) -> Result<BTreeMap<(String, String), Samples>, Mi
     for row in 0..table.rows() {
         let key = [stimulus, provenance].map(|place| cells.text(row, place).to_owned());
         let [stimulus, provenance] = key;
-        let own = clips.entry((stimulus, provenance)).or_insert_with(Samples::new);
+        let own = clips.entry((stimulus, provenance)).or_default();
         cells.add(row, own)?;
     }
     Ok(clips)
