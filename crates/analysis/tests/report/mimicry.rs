@@ -192,16 +192,14 @@ fn what_does_not_suit_is_told_in_both_languages() {
     let study = study();
     let courses = courses(&study);
     let csv = courses_csv(&courses);
-    // Nobody was measured; no course is known.
-    let head = tracks_csv(&study, &courses, 0, 0.0, 0.0);
+    // A table without rows is none: nobody was measured.
+    assert!(Table::parse(tracks_csv(&study, &courses, 0, 0.0, 0.0)).is_err());
+    // No course is known.
     let told = |tracks: &str, courses: &str, language| {
         let report = report(&study, tracks, courses, language).unwrap();
         assert_eq!(mimicry(&report), Value::Null);
         file(&report, "report.md")
     };
-    assert!(
-        told(&head, &csv, Language::English).contains("No play can be used: no face was measured.")
-    );
     let tracks = tracks_csv(&study, &courses, 2, 0.0, 0.0);
     let other = csv.replace(",p,", ",another,");
     assert!(
