@@ -168,7 +168,9 @@ fn votes_are_read_as_they_were_written() {
     let all = votes("here", 3, &WORTHS, 1);
     let bytes = votes_csv(&all).unwrap();
     assert_eq!(read_votes(&bytes).unwrap(), all);
-    let damaged = String::from_utf8(bytes).unwrap().replacen(",left,", ",lft,", 1);
+    let text = String::from_utf8(bytes).unwrap();
+    let (names, rows) = text.split_once('\n').unwrap();
+    let damaged = format!("{names}\n{}", rows.replacen(",left,", ",lft,", 1));
     let refused = read_votes(damaged.as_bytes()).unwrap_err().to_string();
     assert!(refused.contains("\"lft\"; there are left, same and right"), "{refused}");
 }

@@ -64,13 +64,13 @@ pub fn figures(files: &[ReportFile]) -> Vec<Made> {
 const POINTS_PER_PIXEL: f32 = 0.75;
 
 /// Makes PDFs with the fonts of the binary.
-pub struct FigurePdf {
+struct FigurePdf {
     options: usvg::Options<'static>,
 }
 
 impl FigurePdf {
     /// Reads the fonts, which takes some milliseconds.
-    pub fn new() -> Self {
+    fn new() -> Self {
         let mut fonts = fontdb::Database::new();
         for font in [dejavu::sans_condensed::regular(), dejavu::sans_condensed::bold()] {
             fonts.load_font_source(fontdb::Source::Binary(Arc::new(font)));
@@ -86,7 +86,7 @@ impl FigurePdf {
     ///
     /// # Errors
     /// What is no SVG, and text with signs that the font does not have.
-    pub fn of_svg(&self, name: &str, svg: &str) -> Result<Vec<u8>, FigurePdfError> {
+    fn of_svg(&self, name: &str, svg: &str) -> Result<Vec<u8>, FigurePdfError> {
         let no_svg = |why: &dyn ToString| FigurePdfError::NoSvg(why.to_string());
         let parsed = roxmltree::Document::parse(svg).map_err(|error| no_svg(&error))?;
         let tree = Tree::from_xmltree(&parsed, &self.options).map_err(|error| no_svg(&error))?;

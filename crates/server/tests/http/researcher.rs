@@ -342,7 +342,7 @@ pub async fn scripts_export_as_the_description_says(server: &TestServer) {
         assert_eq!(operation["security"], serde_json::json!([{"token": []}]));
     }
     let words = export["parameters"][1]["schema"]["enum"].as_array().unwrap();
-    assert_eq!(words.len(), 8, "{words:?}");
+    assert_eq!(words.len(), 10, "{words:?}");
     let studies = "/researcher/studies/demo";
     let kinds = |operation: &serde_json::Value| -> Vec<String> {
         let content = operation["responses"]["200"]["content"].as_object().unwrap();
