@@ -87,7 +87,7 @@ pub fn new_arena(wanted: &NewArena) -> Result<MadeArena, NoArena> {
     let cuts = std::fs::read_to_string(&wanted.segments)
         .map_err(|e| unread(&e))
         .and_then(|text| read_segments(&text).map_err(|e| e.to_string()));
-    let segments = cuts.as_ref().map(Vec::clone).unwrap_or_default();
+    let segments = cuts.clone().unwrap_or_default();
     sound(&wanted.segments, cuts.map(drop));
     for path in wanted.sounds.values() {
         let read = std::fs::read(path).map_err(|e| unread(&e));

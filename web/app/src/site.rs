@@ -188,9 +188,7 @@ impl Site {
 
     /// Posts what the study's address has not taken yet.
     async fn post(&self) -> Result<(), Failure> {
-        let site = self.file.borrow();
-        let address = site.as_ref().and_then(|site| site.hosting.post.clone());
-        drop(site);
+        let address = self.file.borrow().as_ref().and_then(|site| site.hosting.post.clone());
         let due = self.answers.borrow().as_ref().map(|answers| {
             let (text, _) = self.written(answers, answers.posted);
             (answers.started.participant_id.clone(), answers.posted, answers.events.len(), text)

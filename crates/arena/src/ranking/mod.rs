@@ -218,7 +218,7 @@ pub fn rank(votes: &[Vote], methods: &[String], options: &RankOptions) -> Rankin
         Ok((items, found, differences)) => {
             ranking.left_bias =
                 found.side.map(|side| [side.estimate, side.se_cluster.unwrap_or(side.se_model)]);
-            ranking.lack_of_fit = Some(found.lack_of_fit.clone());
+            ranking.lack_of_fit = Some(found.lack_of_fit);
             ranking.placed =
                 placed(&items, &found, &differences, |method| standing_of(method, &counted));
             ranking.bands = bands::bands(&mut ranking.placed, &differences);

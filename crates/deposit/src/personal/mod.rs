@@ -166,7 +166,7 @@ fn walk(value: &Value, pointer: &mut String, found: &mut Vec<(String, Pattern)>)
 }
 
 /// The questions whose answers are texts, in any version of the study.
-fn written_texts<'a>(versions: &[&'a Study]) -> BTreeSet<String> {
+fn written_texts(versions: &[&Study]) -> BTreeSet<String> {
     let questions = versions.iter().copied().flat_map(Study::all_questions);
     let written = questions.filter(|question| question.kind.is_free_text());
     written.flat_map(|question| question.response_ids()).collect()

@@ -33,9 +33,12 @@ impl Pattern {
     }
 }
 
+/// Whether a text has what a pattern stands for.
+type Test = fn(&str) -> bool;
+
 /// What is in a text, each once.
 pub fn patterns(text: &str) -> Vec<Pattern> {
-    let tests: [(Pattern, fn(&str) -> bool); 6] = [
+    let tests: [(Pattern, Test); 6] = [
         (Pattern::EmailAddress, has_email_address),
         (Pattern::PhoneNumber, has_phone_number),
         (Pattern::WebAddress, has_web_address),
