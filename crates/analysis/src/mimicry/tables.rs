@@ -9,18 +9,21 @@ use mimique_study::TRACKED_SHAPES;
 use crate::trials::error::MimicryError;
 
 /// Times in seconds and a value of each shape, none where there is none.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Samples {
     pub times_s: Vec<f64>,
     /// By the shapes that move, in their order.
     pub values: Vec<Vec<Option<f64>>>,
 }
 
-impl Samples {
-    fn new() -> Self {
+impl Default for Samples {
+    /// No time yet; a column for each shape.
+    fn default() -> Self {
         Self { times_s: Vec::new(), values: vec![Vec::new(); shapes().count()] }
     }
+}
 
+impl Samples {
     /// Times and values of a shape.
     pub fn of(&self, shape: usize) -> Vec<(f64, Option<f64>)> {
         self.times_s.iter().copied().zip(self.values[shape].iter().copied()).collect()
@@ -135,7 +138,7 @@ fn read_tracks(table: &Table) -> Result<Vec<TrackedPlay>, MimicryError> {
                 participant: own.0.to_owned(),
                 stimulus: cells.text(row, stimulus).to_owned(),
                 provenance: cells.text(row, provenance).to_owned(),
-                samples: Samples::new(),
+                samples: Samples::default(),
             });
         }
         cells.add(row, &mut plays[index].samples)?;
