@@ -50,7 +50,7 @@ impl Responses {
     /// Reads a CSV file.
     ///
     /// # Errors
-    /// It is no CSV, or a column of [`NEEDED`] or any row is missing.
+    /// It is no CSV, or a column of `NEEDED` or any row is missing.
     pub fn read(bytes: &[u8]) -> Result<Self, NotResponses> {
         let read = Self::read_any(bytes)?;
         if let Some(name) = NEEDED.into_iter().find(|name| read.column(name).is_none()) {

@@ -30,7 +30,7 @@ pub struct Target {
     /// To zenodo.org itself, not to the repository for trying (sandbox.zenodo.org, demo.dataverse.org)
     #[arg(long, requires = "to", conflicts_with = "host")]
     real: bool,
-    /// Address of the installation, such as https://data.example.org
+    /// Address of the installation, which begins with https
     #[arg(long, requires = "to", value_name = "URL", value_parser = host)]
     host: Option<String>,
     /// Publish it, which cannot be taken back; without it a draft is left to look at
