@@ -24,23 +24,7 @@ pub fn write(files: &[ReportFile], out: &Path) -> anyhow::Result<Vec<String>> {
 
 /// The files of a report by their paths, the PDF of each figure behind them.
 pub fn with_pdfs(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
-    let texts = files.iter().map(|file| (file.path.clone(), file.text.clone().into_bytes()));
-    texts.chain(figures_as_pdf(files)).collect()
-}
-
-/// The PDF of each figure, by its path.
-fn figures_as_pdf(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
-    let mut pdfs = Vec::new();
-    for made in mimique_figure_pdf::figures(files) {
-        let path = made.path();
-        match made.pdf {
-            Ok(bytes) => pdfs.push((path, bytes)),
-            Err(error) => {
-                eprintln!("warning: {}: {error}; take the SVG, it has no PDF", made.svg);
-            }
-        }
-    }
-    pdfs
+    mimique_figure_pdf::with_pdfs(files, |told| eprintln!("warning: {told}"))
 }
 
 /// Refuses a folder that holds something else than a report.

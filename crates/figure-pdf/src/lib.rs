@@ -17,7 +17,7 @@ use usvg::{Group, Node, Tree, fontdb, roxmltree};
 
 /// Why a figure is no PDF.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum FigurePdfError {
+enum FigurePdfError {
     /// What came in is no SVG that can be drawn.
     #[error("this is no SVG ({0})")]
     NoSvg(String),
@@ -34,22 +34,37 @@ pub enum FigurePdfError {
 
 /// A figure of a report as PDF.
 #[derive(Debug)]
-pub struct Made {
+struct Made {
     /// Path of the SVG among the report's files.
-    pub svg: String,
+    svg: String,
     /// The PDF, or why there is none.
-    pub pdf: Result<Vec<u8>, FigurePdfError>,
+    pdf: Result<Vec<u8>, FigurePdfError>,
 }
 
 impl Made {
     /// Path of the PDF: beside the SVG.
-    pub fn path(&self) -> String {
+    fn path(&self) -> String {
         format!("{}.pdf", self.svg.trim_end_matches(".svg"))
     }
 }
 
+/// The files of a report by their paths, the PDF of each figure behind them. `told` hears in a sentence of each figure
+/// that has none.
+pub fn with_pdfs(files: &[ReportFile], told: impl Fn(&str)) -> Vec<(String, Vec<u8>)> {
+    let texts = files.iter().map(|file| (file.path.clone(), file.text.clone().into_bytes()));
+    let mut all: Vec<_> = texts.collect();
+    for made in figures(files) {
+        let path = made.path();
+        match made.pdf {
+            Ok(bytes) => all.push((path, bytes)),
+            Err(error) => told(&format!("{}: {error}; take the SVG, it has no PDF", made.svg)),
+        }
+    }
+    all
+}
+
 /// The PDF of each figure among the files of a report, in their order.
-pub fn figures(files: &[ReportFile]) -> Vec<Made> {
+fn figures(files: &[ReportFile]) -> Vec<Made> {
     let figures: Vec<(&str, &ReportFile)> = (files.iter())
         .filter_map(|file| Some((file.path.strip_prefix("figures/")?.strip_suffix(".svg")?, file)))
         .collect();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use mimique_analysis::{Language, ReportFile};
+use mimique_analysis::Language;
 use mimique_session::Standing;
 use mimique_storage::{Exclusion, Role, SessionRecord, StorageError};
 use mimique_study::Multilingual as _;
@@ -302,20 +302,6 @@ pub(crate) async fn export(
     attachment(&name, bytes)
 }
 
-/// The files of a report, beside each figure's SVG its PDF.
-fn whole_report(files: &[ReportFile]) -> Vec<(String, Vec<u8>)> {
-    let mut whole: Vec<_> =
-        files.iter().map(|file| (file.path.clone(), file.text.clone().into_bytes())).collect();
-    for made in mimique_figure_pdf::figures(files) {
-        let path = made.path();
-        match made.pdf {
-            Ok(bytes) => whole.push((path, bytes)),
-            Err(error) => tracing::warn!("{}: {error}; take the SVG, it has no PDF", made.svg),
-        }
-    }
-    whole
-}
-
 /// A file of the report, or all of them as `report.zip`.
 pub(crate) async fn report(
     State(app): State<App>,
@@ -332,7 +318,9 @@ pub(crate) async fn report(
     }
     let report = app.reports.get(&app.storage, &study, language, &preview).await?;
     if name == "report.zip" {
-        let files = tokio::task::spawn_blocking(move || whole_report(&report.files));
+        let files = tokio::task::spawn_blocking(move || {
+            mimique_figure_pdf::with_pdfs(&report.files, |told| tracing::warn!("{told}"))
+        });
         let files = files.await.map_err(Error::internal)?;
         audit(&app, &who, "export", study.id(), "report").await?;
         let folder = format!("{}_report", study.id());
