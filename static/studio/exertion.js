@@ -5,6 +5,7 @@ import { ExertionPictures } from "../drawing/exertion.js";
 import { ExertionSettings } from "./exertion-settings.js";
 import { isShown, whenShown } from "./tabs.js";
 import { numeral, say } from "./texts.js";
+import { findingWords, warningWords } from "./words-engine.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -206,7 +207,7 @@ export class Exertion {
         this.#veil.hidden = true;
   }
 
-  #tell({ name, person, end, warnings, notes, face }, took) {
+  #tell({ name, person, end, warnings, notes, remarks, face }, took) {
     const [open, stretched, eyes, brows] = end.curves.map((curve) => curve.toFixed(0));
     const rows = [
       [say("body.person"), say("body.facts-person", { rest: person.heartRest.toFixed(0), most: person.heartMost.toFixed(0), vo2: numeral(person.vo2Max, 1) })],
@@ -217,7 +218,7 @@ export class Exertion {
     ];
     $("exertion-facts").replaceChildren(...rows.map(([term, words]) => made("div", {}, made("dt", {}, term), made("dd", { className: "number" }, words))));
     const said = (className) => (text) => made("p", { className }, text);
-    const all = [...warnings.map(said("notice warn")), ...[...notes, ...(face?.warnings ?? [])].map(said("soft"))];
+    const all = [...warnings.map(findingWords).map(said("notice warn")), ...[...notes, ...remarks.map(findingWords), ...(face?.warnings ?? []).map(warningWords)].map(said("soft"))];
     // What is the same is not said anew to those who hear the page.
     const text = all.map((line) => line.textContent).join("\n");
     if ($("exertion-notes").dataset.text === text && $("exertion-notes").childElementCount > 0) return;

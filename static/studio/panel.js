@@ -6,6 +6,7 @@ import { drawMatch } from "./overlay.js";
 import { Parameters } from "./parameters.js";
 import { numeral, say } from "./texts.js";
 import { Viewport } from "./viewport.js";
+import { faultWords, warningWords } from "./words-engine.js";
 import { callWorker } from "./worker-calls.js";
 
 // A change waits so long for the next one before it is solved.
@@ -243,8 +244,9 @@ export class MethodPanel {
       const facts = await callWorker("solve", this.#slot, JSON.stringify(this.#parameters.spec()));
       const took = performance.now() - started;
       if (facts.problems) {
-        const words = facts.problems.map(({ place, text }) => `${place}: ${text}`).join("\n");
-        throw Object.assign(new Error(words), { problems: facts.problems });
+        const problems = facts.problems.map((problem) => ({ ...problem, text: faultWords(problem) }));
+        const words = problems.map(({ place, text }) => say("problem.at", { place, text })).join("\n");
+        throw Object.assign(new Error(words), { problems });
       }
       if (run !== this.#run) return;
       const [weights, avatarPack] = await Promise.all([callWorker("weights", this.#slot), callWorker("slotPack", this.#slot)]);
@@ -329,11 +331,11 @@ export class MethodPanel {
     }
     const atRest = facts.gaze_at_rest?.length ?? 0;
     if (atRest > 0) this.#row(say("gaze"), say("facts.gaze-rest", { count: atRest }));
-    else if (facts.gaze) this.#row(say("gaze"), facts.gaze);
+    else if (facts.gaze) this.#row(say("gaze"), gazeWords(facts.gaze));
     const held = (facts.shapes_told ?? []).filter(({ state }) => state === "held").map(({ shape }) => shape);
     if (held.length > 0) this.#row(say("facts.held"), held.join(", "));
     this.#row(say("facts.weights"), facts.weights_hash.slice(0, 16));
-    this.#notices.replaceChildren(...facts.warnings.map((text) => made("p", { className: "notice warn" }, text)));
+    this.#notices.replaceChildren(...facts.warnings.map((warning) => made("p", { className: "notice warn" }, warningWords(warning))));
   }
 
   #row(name, value) {
@@ -350,4 +352,10 @@ export class MethodPanel {
     this.inspector.remove();
     callWorker("forget", this.#slot);
   }
+}
+
+// Where the eyes look over a take.
+function gazeWords({ azimuth_deg: azimuth, elevation_deg: elevation, vergence_deg: vergence }) {
+  const span = ([low, high]) => say("facts.gaze-span", { low: numeral(low, 1), high: numeral(high, 1) });
+  return say("facts.gaze-of", { azimuth: span(azimuth), elevation: span(elevation), vergence: span(vergence) });
 }

@@ -22,6 +22,7 @@ import { Tabs } from "./tabs.js";
 import { fill, language, say } from "./texts.js";
 import { Timeline } from "./timeline.js";
 import { TrainingFiles } from "./training.js";
+import { problemWords } from "./words-engine.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -84,7 +85,7 @@ const page = {
   avatarShapes: () => sources.avatar.shapes.length,
   faceMarkers: () => (sources.map?.markers ?? []).filter(({ vertex }) => vertex !== null).map(({ label }) => label),
   mapIsThere: () => (sources.map?.markers ?? []).some(({ vertex }) => vertex !== null),
-  trainingMissing: () => (training ? training.missing : say("training.missing")),
+  trainingMissing: () => (training ? training.missing && problemWords(training.missing) : say("training.missing")),
   showMarkers: () => $("show-markers").checked,
   takeIsMotion: () => sources.take?.kind === "markers",
   captureOptions: () => sources.captureOptions(),

@@ -2,6 +2,8 @@
 
 import { moduleWorker } from "../module-worker.js";
 import { sendPanic } from "../panics.js";
+import { say } from "./texts.js";
+import { problemWords } from "./words-engine.js";
 
 const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
@@ -37,12 +39,12 @@ function start() {
     if (data.error === undefined) {
       job.resolve(JSON_CALLS.has(job.call) ? JSON.parse(data.result) : data.result);
     } else {
-      const remedy = data.panicked ? "; the studio's worker broke: reload the page" : "";
-      job.reject(new Error(data.error + remedy));
+      const words = data.problem ? problemWords(JSON.parse(data.problem)) : data.error;
+      job.reject(new Error(data.panicked ? say("worker.broke", { reason: words }) : words));
     }
   };
   started.onerror = (event) => {
-    const reason = new Error(`${event.message || "the studio's worker could not be loaded"}; reload the page`);
+    const reason = new Error(say("worker.unloaded", { reason: event.message || say("worker.absent") }));
     for (const { reject } of jobs.values()) reject(reason);
     jobs.clear();
   };

@@ -58,3 +58,55 @@ test("studio: every parameter of a method has French words, and no other has", a
   const parameters = Object.keys(schema.$defs.Method.properties).filter((key) => !others.includes(key));
   assert.deepEqual([...TRANSLATED].sort(), parameters.sort());
 });
+
+// The variants of an enum of the engine, as its JSON names them: code and names of its values.
+function variantsOf(file, name, rename = (field) => field.replaceAll(/_(\w)/g, (_, letter) => letter.toUpperCase())) {
+  const text = readFileSync(join(root, file), "utf8");
+  const start = text.indexOf(`enum ${name} {`);
+  assert.ok(start >= 0, `${file}: no enum ${name}`);
+  const body = text.slice(start, text.indexOf("\n}\n", start)).replaceAll(/\/\/\/.*/g, "");
+  return [...body.matchAll(/^ {4}(\w+)(?: \{([^}]*)\}|\([^)]*\))?,/gm)].map(([, variant, fields]) => ({
+    code: variant.replaceAll(/(?!^)[A-Z]/g, (letter) => `-${letter}`).toLowerCase(),
+    fields: fields ? [...fields.matchAll(/(\w+):/g)].map(([, field]) => rename(field)) : null,
+  }));
+}
+
+/// What an enum in a variant is like in JSON, and numbers, names and lists for all else.
+const VALUES = {
+  labels: ["a", "b"], shapes: ["a"], columns: ["a"], combinations: [["a", ["b"]]], value: [1, 0], frames: 2, of: 3,
+  markers: [{ label: "a", residual_mm: 1, worst_mm: 2 }], why: { what: "crosses", degrees: 31 },
+  text: "words", range: { low: 0, lowIncluded: true, high: 1 }, expected: { kind: "word", words: ["a"] }, headHeld: true,
+};
+
+// The values of a variant; a name that the engine does not send is an error.
+const valuesOf = ({ code, fields }, more = {}) =>
+  new Proxy({ ...more, ...Object.fromEntries((fields ?? []).map((field) => [field, VALUES[field] ?? 1])) }, {
+    get: (values, key) => (key in values ? values[key] : assert.fail(`${code}: the engine sends no ${String(key)}`)),
+  });
+
+test("studio: whatever the engine warns of or refuses has French words", async () => {
+  const { FRENCH } = await import(pathToFileURL(join(folder, "words-engine.js")));
+  const said = (table, variants, second) => {
+    assert.deepEqual(Object.keys(table).sort(), variants.map(({ code }) => code).sort());
+    for (const variant of variants) {
+      const words = table[variant.code](variant.values ?? valuesOf(variant), second);
+      assert.ok(words.length > 0 && !/undefined|NaN|\[object/.test(words), `${variant.code}: ${words}`);
+    }
+  };
+  // Values that are structs of their own, which the engine writes with the names of their fields.
+  const own = {
+    labels: { fault: "swapped", labels: ["a", "b"], frames: [1, 2], residual_mm: 2, residual_if_mended_mm: 1 },
+    smoothing: { why: "other-face", distance_mm: 3, residual_mm: 2, smoothed_mm: 1 },
+  };
+  const ofTake = variantsOf("crates/stimulus/src/warning.rs", "TakeWarning").filter(({ code }) => code !== "frames");
+  const ofFrames = variantsOf("crates/clip/src/frame_statistics.rs", "FramesWarning");
+  said(FRENCH.WARNINGS, [...ofTake, ...ofFrames].map((variant) => ({ ...variant, values: own[variant.code] })));
+  const problem = { field: "sigma", alternatives: ["a"] };
+  said(FRENCH.FAULTS, variantsOf("crates/solver/src/parameters/problem.rs", "SpecFault"), problem);
+  said(FRENCH.PROBLEMS, variantsOf("web/studio/src/problem.rs", "Trouble"));
+  said(FRENCH.FINDINGS, variantsOf("crates/exertion/src/finding.rs", "Finding"));
+  // What the solver's table says by parameter.
+  const rows = readFileSync(join(root, "crates/solver/src/parameters/table.rs"), "utf8");
+  assert.equal(Object.keys(FRENCH.ZERO).length, [...rows.matchAll(/ zero: Some\(/g)].length);
+  assert.equal(Object.keys(FRENCH.NO_EFFECT).length, [...rows.matchAll(/ because: "/g)].length);
+});

@@ -1,5 +1,7 @@
 //! What is said of the frames of a solve together.
 
+use std::fmt;
+
 use mimique_solver::{FrameReport, FrameWarning};
 use serde::Serialize;
 
@@ -84,48 +86,104 @@ impl FrameStatistics {
     }
 
     /// What should be said of the frames, counted from `first_frame`.
-    pub fn warnings(&self, first_frame: u64) -> Vec<String> {
-        let mut out = Vec::new();
-        let frames =
+    pub fn warnings(&self, first_frame: u64) -> Vec<FramesWarning> {
+        let number = |frame: usize| frame as u64 + first_frame;
+        let told = [
+            self.held.map(|(frames, first)| FramesWarning::Held { frames, first: number(first) }),
+            self.residual_outliers.map(|(frames, worst)| FramesWarning::ResidualOutliers {
+                frames,
+                worst: number(worst),
+                worst_mm: self.residual_worst_mm,
+            }),
+            self.without_markers.map(|(frames, first)| FramesWarning::WithoutMarkers {
+                frames,
+                first: number(first),
+            }),
+            self.far_from_training.map(|(frames, first)| FramesWarning::FarFromTraining {
+                frames,
+                first: number(first),
+            }),
+            (self.smoothed > 0).then_some(FramesWarning::Smoothed { frames: self.smoothed }),
+        ];
+        told.into_iter().flatten().collect()
+    }
+}
+
+/// What should be said of some frames of a solve; frames are numbered as in the capture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "code", rename_all = "kebab-case", rename_all_fields = "camelCase")]
+pub enum FramesWarning {
+    /// Frames that were not solved.
+    Held {
+        /// How many.
+        frames: usize,
+        /// The first of them.
+        first: u64,
+    },
+    /// Frames whose residual stands out of the take's.
+    ResidualOutliers {
+        /// How many.
+        frames: usize,
+        /// The worst of them.
+        worst: u64,
+        /// Its residual, millimetres.
+        worst_mm: f64,
+    },
+    /// Frames in which no marker is seen.
+    WithoutMarkers {
+        /// How many.
+        frames: usize,
+        /// The first of them.
+        first: u64,
+    },
+    /// Frames far from what a regression has learnt from.
+    FarFromTraining {
+        /// How many.
+        frames: usize,
+        /// The first of them.
+        first: u64,
+    },
+    /// Frames whose norm had to be smoothed.
+    Smoothed {
+        /// How many.
+        frames: usize,
+    },
+}
+
+/// The warning as a sentence, in English.
+impl fmt::Display for FramesWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let counted =
             |count: usize| if count == 1 { "1 frame".into() } else { format!("{count} frames") };
-        if let Some((count, first)) = self.held {
-            out.push(format!(
-                "{} not solved (the first is {}): held from the solved frames around",
-                frames(count),
-                first as u64 + first_frame,
-            ));
-        }
-        if let Some((count, worst)) = self.residual_outliers {
-            out.push(format!(
-                "{} with a residual over {OUTLIER_RATIO} times the take's median (the worst is {}, {:.1} mm): \
-                 a marker may jump or change its label there; look at it, or repair the capture",
-                frames(count),
-                worst as u64 + first_frame,
-                self.residual_worst_mm,
-            ));
-        }
-        if let Some((count, first)) = self.without_markers {
-            out.push(format!(
-                "{} without any marker (the first is {}): their weights come from the priors alone",
-                frames(count),
-                first as u64 + first_frame
-            ));
-        }
-        if let Some((count, first)) = self.far_from_training {
-            out.push(format!(
-                "{} far from the training data (the first is {}): their weights tend to the \
+        match *self {
+            Self::Held { frames, first } => write!(
+                f,
+                "{} not solved (the first is {first}): held from the solved frames around",
+                counted(frames)
+            ),
+            Self::ResidualOutliers { frames, worst, worst_mm } => write!(
+                f,
+                "{} with a residual over {OUTLIER_RATIO} times the take's median (the worst is {worst}, \
+                 {worst_mm:.1} mm): a marker may jump or change its label there; look at it, or repair the capture",
+                counted(frames)
+            ),
+            Self::WithoutMarkers { frames, first } => write!(
+                f,
+                "{} without any marker (the first is {first}): their weights come from the priors alone",
+                counted(frames)
+            ),
+            Self::FarFromTraining { frames, first } => write!(
+                f,
+                "{} far from the training data (the first is {first}): their weights tend to the \
                  neutral face; record such expressions in the range of motion",
-                frames(count),
-                first as u64 + first_frame
-            ));
-        }
-        if self.smoothed > 0 {
-            out.push(format!(
+                counted(frames)
+            ),
+            Self::Smoothed { frames } => write!(
+                f,
                 "{} met the markers exactly: the norm was smoothed with eps = 1e-4 l",
-                frames(self.smoothed)
-            ));
+                counted(frames)
+            ),
         }
-        out
     }
 }
 
@@ -142,7 +200,7 @@ mod tests {
         reports[9].residual = 0.7375;
         let statistics = FrameStatistics::of(&reports);
         assert_eq!(statistics.residual_outliers, Some((2, 9)));
-        let said = statistics.warnings(100);
+        let said: Vec<String> = statistics.warnings(100).iter().map(ToString::to_string).collect();
         assert!(said[0].starts_with("2 frames with a residual over 5 times"), "{said:?}");
         assert!(said[0].contains("the worst is 109, 737.5 mm"), "{said:?}");
         assert_eq!(FrameStatistics::of(&[]).residual_outliers, None);
@@ -151,14 +209,14 @@ mod tests {
     #[test]
     fn frames_that_fail_are_counted_and_named() {
         let mut reports = vec![FrameReport::default(); 12];
-        assert_eq!(FrameStatistics::of(&reports).warnings(700), Vec::<String>::new());
+        assert_eq!(FrameStatistics::of(&reports).warnings(700), Vec::<FramesWarning>::new());
         for frame in [4, 9] {
             reports[frame].warning = Some(FrameWarning::Held);
         }
         reports[2].warning = Some(FrameWarning::NoMarkers);
         let statistics = FrameStatistics::of(&reports);
         assert_eq!(statistics.held, Some((2, 4)));
-        let said = statistics.warnings(700);
+        let said: Vec<String> = statistics.warnings(700).iter().map(ToString::to_string).collect();
         assert_eq!(said.len(), 2, "{said:?}");
         assert_eq!(
             said[0],

@@ -67,7 +67,7 @@ mod solve_packs;
 mod unsolved;
 mod weight_timing;
 
-pub use frame_statistics::FrameStatistics;
+pub use frame_statistics::{FrameStatistics, FramesWarning};
 pub use gaze::with_gaze_at_rest;
 pub use hashes::{SOLVER_VERSION, sha256_hex};
 pub use mimique_solver::weights_hash;

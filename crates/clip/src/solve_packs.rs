@@ -5,7 +5,7 @@ use mimique_avatar::HEAD_POSE_SHAPES;
 use mimique_avatar::pack::PackError;
 use mimique_solver::{FitError, FrontEndError, MethodSpec, Operators};
 
-use crate::frame_statistics::FrameStatistics;
+use crate::frame_statistics::{FrameStatistics, FramesWarning};
 use crate::packs::{
     SegmentMarkers, TakeContent, TakePack, decode_inflated_operators, decode_operators, decode_take,
 };
@@ -30,8 +30,8 @@ pub struct SolvedTake {
     pub gaze_at_rest: Vec<String>,
     /// Residual, iterations and convergence over all frames; `None` for recorded weights.
     pub statistics: Option<FrameStatistics>,
-    /// What should be said, a sentence each.
-    pub warnings: Vec<String>,
+    /// What should be said of its frames.
+    pub warnings: Vec<FramesWarning>,
 }
 
 /// Why a clip cannot be solved.

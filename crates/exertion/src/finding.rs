@@ -2,6 +2,7 @@
 //! what their readers can do.
 
 use mimique_mocap::{Capture, LengthUnit};
+use serde::Serialize;
 
 use crate::body::Body;
 use crate::chain::{Clip, Series};
@@ -12,7 +13,8 @@ use crate::person::Person;
 const UNIT: f64 = 0.2;
 
 /// Something worth saying of a computation.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error, Serialize)]
+#[serde(tag = "code", rename_all = "kebab-case", rename_all_fields = "camelCase")]
 pub enum Finding {
     /// The law of the thesis takes the heart to its maximum.
     #[error(

@@ -57,6 +57,7 @@ mod segments;
 mod sound;
 mod suggest_map;
 mod take;
+mod warning;
 mod weights;
 
 pub use avatar::{
@@ -102,6 +103,7 @@ pub use take::{
     ShapeRow, ShapeState, SidecarError, SolveError, SolveReport, SolvedCapture, StageSeconds,
     TakeOptions, Training, sidecar_path, solve_take,
 };
+pub use warning::TakeWarning;
 pub use weights::{
     Driven, Performance, PerformanceError, RecordedNames, RecordedWeights, WeightBeyondSense,
     WeightSteps, read_performance, weight_steps, weights_for_file,

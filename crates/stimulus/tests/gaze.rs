@@ -89,7 +89,7 @@ fn every_method_shows_the_gaze_that_is_given() {
             let said = solved.report.gaze.unwrap();
             assert!(said.words().contains("elevation -8.0 to -8.0"), "{said:?}");
             assert!(solved.report.gaze_at_rest.is_empty());
-            assert!(!solved.report.warnings.iter().any(|w| w.contains("gaze")));
+            assert!(!solved.report.warnings.iter().any(|w| w.to_string().contains("gaze")));
         }
     }
     // Without a gaze the eyes rest, and what is known of the take differs.
@@ -221,7 +221,11 @@ fn a_performance_whose_eyes_part_is_warned_of() {
     for row in table.weights.chunks_exact_mut(n).take(3) {
         (row[left], row[right]) = (0.3, 0.28);
     }
-    let said = GazeStatistics::of(&table.shape_names, &table.weights).unwrap().warning(7).unwrap();
+    let said = GazeStatistics::of(&table.shape_names, &table.weights)
+        .unwrap()
+        .warning(7)
+        .unwrap()
+        .to_string();
     assert!(
         said.starts_with("3 frames with a gaze that eyes do not have; at worst, in frame 7"),
         "{said}"

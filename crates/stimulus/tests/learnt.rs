@@ -322,6 +322,7 @@ fn bad_training_is_refused_with_what_to_do() {
     // Shapes without weights are said.
     let mut partial = scene.training.clone();
     partial.weights.shape_names[0] = "unheardOf".into();
-    let said = partial.warnings(&scene.skin.shape_names).join("; ");
+    let said = partial.warnings(&scene.skin.shape_names);
+    let said = said.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
     says(said, &["no shape unheardOf", &format!("no weights of {}", scene.skin.shape_names[0])]);
 }

@@ -78,7 +78,7 @@ impl Solved {
             "shapeNames": shape_names,
             "gazeAtRest": gaze_at_rest,
             "statistics": statistics,
-            "warnings": warnings,
+            "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         })
         .to_string()
     }

@@ -4,7 +4,8 @@
 use mimique_geometry::{Point, align_rigidly, centroid};
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 impl Workspace {
     /// The mean place of each marker in the neutral frames (in all, where none are named), metres; null where it is

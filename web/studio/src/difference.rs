@@ -3,7 +3,8 @@
 use mimique_comparison::{ComparedFace, PartDifference};
 use serde::Serialize;
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 /// The difference of two solved takes in one frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -9,7 +9,8 @@ use mimique_stimulus::{
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Take, Workspace};
+use crate::problem::{Problem, Trouble};
+use crate::workspace::{Take, Workspace};
 
 /// Tier of an ELAN document.
 const TIER: &str = "expressions";
@@ -170,7 +171,7 @@ impl Workspace {
                 let rate = table.rate_hz().ok_or_else(|| Problem::of(name, "no rate"))?;
                 Ok((table.frames.len(), rate))
             }
-            None => Err(Problem("no capture yet; open one first".to_owned())),
+            None => Err(Trouble::NoCapture.into()),
         }
     }
 

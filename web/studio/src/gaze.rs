@@ -5,7 +5,8 @@ use mimique_mocap::{WeightOptions, read_weights};
 use mimique_stimulus::{GazeTrack, GivenGaze};
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 /// The largest angles that can be held, degrees to each side, as in a study file.
 const MOST_DEGREES: f64 = 45.0;

@@ -3,7 +3,8 @@
 use mimique_stimulus::{MappedMarker, MarkerMap, MarkerPlace, suggest_map};
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 impl Workspace {
     /// Takes the map of a file: JSON, or CSV with `marker,role,vertex`.

@@ -1,6 +1,6 @@
 //! The methods and their parameters as the page's fields need them, from the solver's table.
 
-use mimique_solver::{Kind, Method, MethodSpec, Needs, PARAMETERS, Parameter, SpecError};
+use mimique_solver::{Method, MethodSpec, Needs, PARAMETERS, Parameter, SpecError};
 use serde_json::{Value, json};
 
 /// Every method with the rows of the solver's table that it uses, for the fields of the page.
@@ -22,15 +22,6 @@ pub fn methods() -> Value {
 
 /// A row of the table as a field needs it: what it is, its range, and the method's default.
 fn parameter(row: &Parameter, method: Method) -> Value {
-    let (kind, words) = match row.kind {
-        Kind::Number => ("number", &[][..]),
-        Kind::WholeNumber => ("whole-number", &[][..]),
-        Kind::Interval => ("interval", &[][..]),
-        Kind::Word(words) => ("word", words),
-        Kind::Names => ("names", &[][..]),
-        Kind::NumberByName => ("number-by-name", &[][..]),
-        Kind::IntervalByName => ("interval-by-name", &[][..]),
-    };
     let about = &row.about;
     let help = match about.zero {
         Some(zero) => format!("{} 0: {zero}.", row.help),
@@ -41,13 +32,14 @@ fn parameter(row: &Parameter, method: Method) -> Value {
         "label": about.label,
         "help": help,
         "heading": about.group.heading(),
-        "kind": kind,
-        "words": words,
         "unit": about.quantity.symbol(),
         "step": about.step,
         "foundBy": about.found_by,
         "default": row.default_of(method),
     });
+    let kind = json!(row.kind);
+    field["kind"] = kind["kind"].clone();
+    field["words"] = kind["words"].clone();
     if about.range.low.is_finite() {
         field["minimum"] = json!(about.range.low);
     }
@@ -58,8 +50,8 @@ fn parameter(row: &Parameter, method: Method) -> Value {
 }
 
 /// What is wrong with a method (JSON), for the controls that it is about: `{"problems": [...]}`, each
-/// with `field`, `entry` (or null), `place` and `text`; `None` for a method without problems, and for
-/// text that is not JSON.
+/// with `field`, `entry` (or null), `place`, `text` in English and what it is made of: `is` (the fault) and
+/// `alternatives`; `None` for a method without problems, and for text that is not JSON.
 pub fn problems(method: &str) -> Option<Value> {
     let given: Value = serde_json::from_str(method).ok()?;
     let problems = MethodSpec::checked(&given).err()?;
@@ -70,6 +62,8 @@ pub fn problems(method: &str) -> Option<Value> {
             "entry": problem.entry,
             "place": format!("{}{entry}", problem.field),
             "text": format!("{}; {}", problem.message(), problem.remedy()),
+            "is": problem.fault,
+            "alternatives": problem.alternatives(),
         })
     };
     Some(json!({ "problems": problems.iter().map(one).collect::<Vec<_>>() }))
@@ -102,9 +96,12 @@ mod tests {
             found["problems"],
             json!([
                 { "field": "kappa", "entry": null, "place": "kappa",
-                  "text": "is -1; give a number above 0" },
+                  "text": "is -1; give a number above 0", "alternatives": [],
+                  "is": { "fault": "out-of-range", "value": -1.0, "zero": null,
+                          "range": { "low": 0.0, "lowIncluded": false, "high": null } } },
                 { "field": "bounds", "entry": "jawOpen", "place": "bounds.jawOpen",
-                  "text": "is [1, 0]; give two numbers, the lower one first" },
+                  "text": "is [1, 0]; give two numbers, the lower one first", "alternatives": [],
+                  "is": { "fault": "no-interval", "value": [1.0, 0.0] } },
             ])
         );
         assert_eq!(problems(r#"{"method": "lsts"}"#), None);

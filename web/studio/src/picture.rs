@@ -1,7 +1,8 @@
 //! The skin drawn by the processor with the stage's own camera: a heat map of a difference, and the
 //! vertex under a click. Both work without a graphics device.
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 use mimique_geometry::Point;
 
 /// A picture of `width` x `height` pixels.

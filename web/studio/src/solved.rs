@@ -6,12 +6,13 @@ use mimique_geometry::{DVec3, Point};
 use mimique_mocap::WeightsTable;
 use mimique_solver::{MarkerSite, Method, MethodSpec, Needs, SurfaceResponse};
 use mimique_stimulus::{
-    GazeStatistics, RecordedWeights, SolvedCapture, TakeOptions, lock_shapes, solve_take,
+    RecordedWeights, SolvedCapture, TakeOptions, TakeWarning, lock_shapes, solve_take,
     surface_avatar,
 };
 use serde_json::{Value, json};
 
-use crate::workspace::{Face, Problem, Take, Workspace};
+use crate::problem::{Problem, Trouble};
+use crate::workspace::{Face, Take, Workspace};
 
 /// The take solved by one method.
 #[derive(Debug)]
@@ -52,13 +53,10 @@ impl Workspace {
                 recorded(face, name, table)?
             }
             (Some(Take::Weights { name, .. }), _) => {
-                let what = "holds weights, no markers; take the method recorded";
-                return Err(Problem::of(name, what));
+                return Err(Problem::at(name, Trouble::HoldsWeights));
             }
             (_, Needs::Weights) => {
-                let what =
-                    "recorded needs weights; open a Live Link Face file, or a CSV of weights";
-                return Err(Problem::of("method", what));
+                return Err(Problem::at("method", Trouble::NeedsWeights));
             }
             _ => self.fitted(face, &spec)?,
         };
@@ -92,8 +90,7 @@ impl Workspace {
     fn fitted(&self, face: &Face, spec: &MethodSpec) -> Result<(Solved, Value), Problem> {
         let capture = self.capture()?;
         if self.map.face.is_empty() {
-            let what = "empty; suggest one, or open one";
-            return Err(Problem::of("marker map", what));
+            return Err(Problem::at("marker map", Trouble::EmptyMap));
         }
         let training = match spec.method.needs() {
             Needs::Training => Some(Box::new(self.training()?)),
@@ -116,14 +113,14 @@ impl Workspace {
             "rate_hz": report.rate_hz,
             "head_lowpass_hz": report.head_lowpass_hz,
             "gaze_at_rest": report.gaze_at_rest,
-            "gaze": report.gaze.as_ref().map(GazeStatistics::words),
+            "gaze": report.gaze,
             "shapes_told": report.shapes_told,
             "shapes": table.shape_names,
             "neutral": report.neutral,
             "markers": report.markers,
             "head": report.head,
             "summary": report.summary,
-            "warnings": report.warnings,
+            "warnings": report.warnings.iter().map(told).collect::<Vec<_>>(),
             "weights_hash": report.weights_hash,
             "provenance": report.provenance,
             "own_avatar": avatar.is_some(),
@@ -166,7 +163,7 @@ impl Workspace {
     }
 
     pub(crate) fn slot(&self, slot: &str) -> Result<&Solved, Problem> {
-        self.solved.get(slot).ok_or_else(|| Problem::of(slot, "nothing is solved here yet"))
+        self.solved.get(slot).ok_or_else(|| Problem::at(slot, Trouble::NothingSolved))
     }
 
     /// The weights as they are drawn, frames x shapes.
@@ -299,7 +296,7 @@ fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Va
         "markers": [],
         "head": [],
         "summary": null,
-        "warnings": names.warnings(true),
+        "warnings": names.warnings(true).iter().map(told).collect::<Vec<_>>(),
         "weights_hash": weights_hash(&table.weights),
         "own_avatar": false,
     });
@@ -315,4 +312,11 @@ fn recorded(face: &Face, name: &str, table: &WeightsTable) -> Result<(Solved, Va
         iterations: Vec::new(),
     };
     Ok((solved, facts))
+}
+
+/// A warning for the page: its code and values, and its sentence in English as `text`.
+fn told(warning: &TakeWarning) -> Value {
+    let mut told = json!(warning);
+    told["text"] = json!(warning.to_string());
+    told
 }

@@ -7,7 +7,8 @@ use mimique_mocap::{Capture, WeightOptions, WeightsTable, read_weights};
 use mimique_stimulus::{Training, built_in_training};
 use serde_json::{Value, json};
 
-use crate::workspace::{Origin, Problem, Workspace, read_capture};
+use crate::problem::{Problem, Trouble};
+use crate::workspace::{Origin, Workspace, read_capture};
 
 /// Neutral frames of a training take where nobody names others, as in `mimique solve`.
 const NEUTRAL: Range<usize> = 0..60;
@@ -87,7 +88,7 @@ impl Workspace {
     /// [`Problem`]: no training take yet, or not frames of it.
     pub fn set_training_neutral(&mut self, first: usize, end: usize) -> Result<Value, Problem> {
         let Some((name, _, capture)) = &self.training.take else {
-            return Err(Problem::of("training", "no take yet; open one first"));
+            return Err(Problem::at("training", Trouble::NoTraining));
         };
         let frames = capture.frames();
         if first >= end || end > frames {
@@ -116,21 +117,22 @@ impl Workspace {
                 "columns": table.shape_names.len(),
             })),
             "neutral": neutral.map(|n| [n.start, n.end]),
-            "missing": self.missing_training(),
+            "missing": self.missing_training().map(|trouble| Problem::from(trouble).json()),
         })
     }
 
-    fn missing_training(&self) -> Option<String> {
+    fn missing_training(&self) -> Option<Trouble> {
         match (&self.training.take, &self.training.weights) {
-            (None, None) => Some("open a range of motion and its weights".to_owned()),
-            (None, Some(_)) => Some("open the capture that these weights belong to".to_owned()),
-            (Some(_), None) => Some("open the weights that were played in it".to_owned()),
+            (None, None) => Some(Trouble::NoTraining),
+            (None, Some(_)) => Some(Trouble::NoTrainingTake),
+            (Some(_), None) => Some(Trouble::NoTrainingWeights),
             (Some((take, _, capture)), Some((name, table))) => {
                 let (frames, rows) = (capture.frames(), table.frames.len());
-                (frames != rows).then(|| {
-                    format!(
-                        "{take} has {frames} frames, {name} {rows}; give a row of weights per frame"
-                    )
+                (frames != rows).then(|| Trouble::TrainingRows {
+                    take: take.clone(),
+                    frames,
+                    weights: name.clone(),
+                    rows,
                 })
             }
         }
@@ -143,12 +145,12 @@ impl Workspace {
     /// What a regression learns from.
     pub(crate) fn training(&self) -> Result<Training, Problem> {
         if let Some(missing) = self.missing_training() {
-            return Err(Problem::of("training", missing));
+            return Err(Problem::at("training", missing));
         }
         let TrainingFiles { take: Some((.., capture)), weights: Some((_, weights)), .. } =
             &self.training
         else {
-            return Err(Problem::of("training", "open a range of motion and its weights"));
+            return Err(Problem::at("training", Trouble::NoTraining));
         };
         Ok(Training {
             capture: capture.clone(),

@@ -20,26 +20,9 @@ use serde_json::{Value, json};
 use crate::exertion::ExertionDesk;
 use crate::labels::Labelling;
 use crate::layout::LayoutDesk;
+use crate::problem::{Problem, Trouble};
 use crate::solved::Solved;
 use crate::training::TrainingFiles;
-
-/// What is wrong: file or part, place, value, remedy.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Problem(pub String);
-
-impl Problem {
-    pub(crate) fn of(what: &str, error: impl std::fmt::Display) -> Self {
-        Self(format!("{what}: {error}"))
-    }
-}
-
-impl std::fmt::Display for Problem {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Problem {}
 
 /// Everything that the studio knows.
 #[derive(Debug, Default)]
@@ -281,17 +264,14 @@ impl Workspace {
     }
 
     pub(crate) fn face(&self) -> Result<&Face, Problem> {
-        self.face.as_ref().ok_or_else(|| Problem("no avatar yet; open one first".to_owned()))
+        self.face.as_ref().ok_or_else(|| Problem::from(Trouble::NoAvatar))
     }
 
     pub(crate) fn capture(&self) -> Result<&Capture, Problem> {
         match &self.take {
             Some(Take::Markers { recording, .. }) => Ok(&recording.capture),
-            Some(Take::Weights { name, .. }) => Err(Problem::of(
-                name,
-                "holds weights, no markers; open a capture, or take the method recorded",
-            )),
-            None => Err(Problem("no capture yet; open one first".to_owned())),
+            Some(Take::Weights { name, .. }) => Err(Problem::at(name, Trouble::HoldsWeights)),
+            None => Err(Trouble::NoCapture.into()),
         }
     }
 }

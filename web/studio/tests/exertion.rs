@@ -182,7 +182,7 @@ fn a_motion_of_a_file_and_one_without_joints() {
     let own = told(&mut workspace, json!({"source": "file"}));
     let built_in = told(&mut workspace, json!({}));
     assert_eq!(own["drawing"]["courses"], built_in["drawing"]["courses"]);
-    assert!(own["notes"].to_string().contains("repeated"));
+    assert!(own["remarks"].to_string().contains("repeated"));
     // The capture of the workspace is one, too.
     workspace.take_file("run.bvh", bvh.as_bytes(), None, None).unwrap();
     let take = told(&mut workspace, json!({"source": "take"}));

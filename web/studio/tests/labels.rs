@@ -133,9 +133,9 @@ fn what_is_confirmed_relabelled_or_moved_is_never_overwritten() {
 #[test]
 fn without_a_model_the_confirmed_expressions_are_learnt_from() {
     let mut workspace = take();
-    let problem = workspace.suggest_labels("").unwrap_err().0;
+    let problem = workspace.suggest_labels("").unwrap_err().to_string();
     assert!(problem.starts_with("labels: no model; open one"), "{problem}");
-    let problem = workspace.labels_from_expressions(true).unwrap_err().0;
+    let problem = workspace.labels_from_expressions(true).unwrap_err().to_string();
     assert!(problem.contains("no expression; open some"), "{problem}");
     // The first smile and the frown are named by hand; the rest is unsaid.
     workspace
@@ -248,15 +248,15 @@ fn what_cannot_be_done_is_said_with_a_remedy() {
         (workspace.move_label(0, 5, 251).unwrap_err(), "frames 5:251 of 250"),
         (workspace.label_model("m.json", "{").unwrap_err(), "m.json: model: line 1, column 1"),
     ] {
-        assert!(problem.0.contains(part), "{problem}");
+        assert!(problem.to_string().contains(part), "{problem}");
     }
     workspace.confirm_label(0).unwrap();
     let problem = workspace.move_label(1, 0, 20).unwrap_err();
-    assert!(problem.0.contains("frames 0:20 are confirmed as others"), "{problem}");
+    assert!(problem.to_string().contains("frames 0:20 are confirmed as others"), "{problem}");
     let other = csv(1.0).replace("jawOpen", "jawLeft");
     workspace.take_file("other.csv", other.as_bytes(), None, None).unwrap();
     let problem = workspace.suggest_labels("").unwrap_err();
-    assert!(problem.0.contains("\"jawOpen\" is missing"), "{problem}");
+    assert!(problem.to_string().contains("\"jawOpen\" is missing"), "{problem}");
     let problem = Workspace::new().learn_labels("").unwrap_err();
-    assert!(problem.0.contains("solve the capture first"), "{problem}");
+    assert!(problem.to_string().contains("solve the capture first"), "{problem}");
 }

@@ -176,7 +176,7 @@ fn the_training_takes_weights_are_the_motion() {
 
 #[test]
 fn what_cannot_be_is_said_with_a_remedy() {
-    let said = |result: Result<Value, mimique_web_studio::Problem>| result.unwrap_err().0;
+    let said = |result: Result<Value, mimique_web_studio::Problem>| result.unwrap_err().to_string();
     let mut empty = Workspace::new();
     assert!(said(empty.make_layout("greedy", 24, 6, true)).contains("open one first"));
     assert_eq!(empty.layout_state().unwrap(), json!({"markers": []}));

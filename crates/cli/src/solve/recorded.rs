@@ -48,8 +48,9 @@ pub(super) fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         .hash();
     let gaze = GazeStatistics::of(&table.shape_names, &table.weights);
     let first_frame = table.frames.first().copied().unwrap_or_default();
-    let mut warnings = names.warnings(true);
-    warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(first_frame)));
+    let of_gaze = gaze.as_ref().and_then(|gaze| gaze.warning(first_frame));
+    let said = names.warnings(true).into_iter().chain(of_gaze);
+    let mut warnings: Vec<String> = said.map(|warning| warning.to_string()).collect();
     warnings.extend(write_weights(&table, &args.out)?);
     let report = json!({
         "method": {"method": "recorded"},

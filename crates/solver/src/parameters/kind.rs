@@ -2,8 +2,11 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 /// The numbers that a parameter may be; both ends of an interval obey it, too.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub struct Range {
     /// The least number, or what the number lies above.
     pub low: f64,
@@ -14,7 +17,8 @@ pub struct Range {
 }
 
 /// What a parameter is in JSON.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(tag = "kind", content = "words", rename_all = "kebab-case")]
 pub enum Kind {
     /// A number.
     Number,
@@ -46,7 +50,8 @@ pub enum Quantity {
 }
 
 /// Whose names a list or an object has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum NamesOf {
     /// Blendshapes of the avatar.
     Shapes,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 use crate::method::names::Method;
 use crate::parameters::group::Group;
 use crate::parameters::kind::{Kind, NamesOf, Range};
@@ -18,7 +20,8 @@ pub struct SpecError {
 }
 
 /// What is wrong with a parameter, with the value and what would be right.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "fault", rename_all = "kebab-case", rename_all_fields = "camelCase")]
 pub enum SpecFault {
     /// The method is not an object.
     NotAnObject,
@@ -173,13 +176,28 @@ impl SpecError {
         }
     }
 
+    /// What the value may be instead: methods, words, names, or the parameters that the method takes.
+    pub fn alternatives(&self) -> Vec<&str> {
+        match &self.fault {
+            SpecFault::UnknownMethod { .. } => Method::ALL.map(Method::name).to_vec(),
+            SpecFault::UnknownWord { words, .. } => words.to_vec(),
+            SpecFault::NotUsed { method } => method.parameters(),
+            SpecFault::NotBlended { method, .. } => (Method::ALL.into_iter())
+                .filter(|other| other != method && other.uses(Group::Blend))
+                .map(Method::name)
+                .collect(),
+            SpecFault::UnknownName { known, .. } => known.iter().map(String::as_str).collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// What to do about it, in English.
     pub fn remedy(&self) -> String {
         match &self.fault {
             SpecFault::NotAnObject => "write {\"method\": \"lsts\"}".to_owned(),
             SpecFault::MethodMissing => "name a method, for example lsts".to_owned(),
             SpecFault::UnknownMethod { .. } => {
-                format!("use one of {}", Method::ALL.map(Method::name).join(", "))
+                format!("use one of {}", self.alternatives().join(", "))
             }
             SpecFault::UnknownParameter => "correct its name or remove it".to_owned(),
             SpecFault::WrongKind { expected, .. } => format!("give {expected}"),
@@ -189,14 +207,12 @@ impl SpecError {
                 format!("give a number {range} (0: {zero})")
             }
             SpecFault::NoInterval { .. } => "give two numbers, the lower one first".to_owned(),
-            SpecFault::NotUsed { method } => match method.parameters().as_slice() {
+            SpecFault::NotUsed { .. } => match self.alternatives().as_slice() {
                 [] => "remove it (it takes none)".to_owned(),
                 taken => format!("remove it (it takes {})", taken.join(", ")),
             },
-            SpecFault::NotBlended { method, .. } => {
-                let others = Method::ALL.into_iter();
-                let others = others.filter(|other| other != method && other.uses(Group::Blend));
-                format!("name one of {}", others.map(Method::name).collect::<Vec<_>>().join(", "))
+            SpecFault::NotBlended { .. } => {
+                format!("name one of {}", self.alternatives().join(", "))
             }
             SpecFault::NoEffect { .. } => "remove it".to_owned(),
             SpecFault::NoThinShell => "make one positive".to_owned(),

@@ -1,7 +1,11 @@
 //! Where the eyes of a performance look, and whether eyes do so.
 
+use std::fmt;
+
 use mimique_avatar::{GazeShapes, VERGENCE_DEGREES, VERTICAL_DISPARITY_DEGREES};
 use serde::Serialize;
+
+use crate::TakeWarning;
 
 /// Where the eyes look over the frames of a take, degrees: least and largest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -104,21 +108,20 @@ impl GazeStatistics {
     }
 
     /// What should be said of a gaze that eyes do not have, frames counted from `first_frame`.
-    pub fn warning(&self, first_frame: u64) -> Option<String> {
-        let GazeBeyond { frames, worst, why } = self.beyond.as_ref()?;
-        let what = match why {
-            GazeFault::Diverges(by) => format!("the eyes diverge by {by:.1} degrees (wall-eyed)"),
-            GazeFault::Crosses(by) => format!("the eyes converge by {by:.1} degrees (cross-eyed)"),
-            GazeFault::OneHigher(by) => {
-                format!("one eye looks {by:.1} degrees higher than the other")
-            }
-        };
-        let frames = if *frames == 1 { "1 frame".to_owned() } else { format!("{frames} frames") };
-        Some(format!(
-            "{frames} with a gaze that eyes do not have; at worst, in frame {}, {what}; let the eyes rest, give \
-             their gaze, or correct the eyeLook weights",
-            *worst as u64 + first_frame
-        ))
+    pub fn warning(&self, first_frame: u64) -> Option<TakeWarning> {
+        let GazeBeyond { frames, worst, why } = *self.beyond.as_ref()?;
+        Some(TakeWarning::GazeBeyondEyes { frames, worst: worst as u64 + first_frame, why })
+    }
+}
+
+/// `the eyes diverge by 17.0 degrees (wall-eyed)`.
+impl fmt::Display for GazeFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Diverges(by) => write!(f, "the eyes diverge by {by:.1} degrees (wall-eyed)"),
+            Self::Crosses(by) => write!(f, "the eyes converge by {by:.1} degrees (cross-eyed)"),
+            Self::OneHigher(by) => write!(f, "one eye looks {by:.1} degrees higher than the other"),
+        }
     }
 }
 
@@ -164,7 +167,7 @@ mod tests {
         let (names, weights) = take(&[gaze(0.0), gaze(-4.0), gaze(-17.0), gaze(26.0)]);
         let told = GazeStatistics::of(&names, &weights).unwrap();
         assert_eq!(told.beyond.as_ref().map(|b| (b.frames, b.worst)), Some((3, 2)));
-        let said = told.warning(100).unwrap();
+        let said = told.warning(100).unwrap().to_string();
         assert!(
             said.contains("3 frames") && said.contains("frame 102, the eyes diverge by 17.0"),
             "{said}"

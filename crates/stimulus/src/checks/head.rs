@@ -4,6 +4,8 @@
 use mimique_geometry::{Point, RigidMotion, centroid};
 use serde::Serialize;
 
+use crate::TakeWarning;
+
 /// How still a head marker is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HeadMarker {
@@ -55,20 +57,9 @@ pub(crate) fn head_markers(
 }
 
 /// What is to be said of head markers that move.
-pub(crate) fn moving_skin(markers: &[HeadMarker]) -> Option<String> {
-    let mut moving: Vec<&HeadMarker> =
-        markers.iter().filter(|m| m.residual_mm > STILL_MM).collect();
+pub(crate) fn moving_skin(markers: &[HeadMarker]) -> Option<TakeWarning> {
+    let mut moving: Vec<HeadMarker> =
+        markers.iter().filter(|m| m.residual_mm > STILL_MM).cloned().collect();
     moving.sort_by(|a, b| b.residual_mm.total_cmp(&a.residual_mm));
-    (!moving.is_empty()).then(|| {
-        let named: Vec<String> = (moving.iter())
-            .map(|m| {
-                format!("{} ({:.1} mm rms, {:.1} at worst)", m.label, m.residual_mm, m.worst_mm)
-            })
-            .collect();
-        format!(
-            "head markers move on the head: {}; they seem to sit on skin, and the face is \
-             stabilised wrongly by as much: name markers on the skull, or the stillest ones, as head",
-            named.join(", ")
-        )
-    })
+    (!moving.is_empty()).then_some(TakeWarning::HeadMarkersMove { markers: moving })
 }

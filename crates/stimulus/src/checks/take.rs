@@ -1,14 +1,11 @@
 //! A solved take looked over: head markers that move, labels that are not what they say.
 
 use mimique_clip::{MarkerMotion, MarkerSolution, solve_markers};
-use mimique_solver::{
-    FrontEnd, FrontEndError, HEAD_LOWPASS_HZ, MOST_HEAD_LOWPASS_OF_RATE, Method, MethodSpec,
-    Operators,
-};
+use mimique_solver::{FrontEnd, FrontEndError, Method, MethodSpec, Operators};
 
 use super::head::{HeadMarker, head_markers, moving_skin};
 use super::labels::{LabelCheck, LabelProblem};
-use crate::{JoinedTake, SolveError};
+use crate::{JoinedTake, SolveError, TakeWarning};
 
 /// Whether a method is fitted to the markers: only then a residual tells of labels.
 pub(crate) fn is_fitted(spec: &MethodSpec) -> bool {
@@ -30,25 +27,17 @@ impl JoinedTake<'_> {
     ///
     /// # Errors
     /// As [`JoinedTake::head_markers`].
-    pub fn head_warning(&self) -> Result<Option<String>, FrontEndError> {
+    pub fn head_warning(&self) -> Result<Option<TakeWarning>, FrontEndError> {
         Ok(moving_skin(&self.head_markers()?))
     }
 
     /// The warning of a head that is not filtered, where a method leaves the low-pass to the default
     /// and the rate has no room for it.
-    pub(crate) fn unfiltered_head(&self, spec: &MethodSpec) -> Option<String> {
+    pub(crate) fn unfiltered_head(&self, spec: &MethodSpec) -> Option<TakeWarning> {
         let wanted = self.columns.head.is_some()
             && spec.head_lowpass_hz.is_none()
             && spec.head_lowpass_hz(self.rate_hz).is_none();
-        wanted.then(|| {
-            format!(
-                "the head is not filtered: {} frames per second leave no room for a low-pass of {} \
-                 Hz, which takes {}; give headLowpassHz to choose another cut-off, 0 for none",
-                self.rate_hz,
-                HEAD_LOWPASS_HZ,
-                HEAD_LOWPASS_HZ / MOST_HEAD_LOWPASS_OF_RATE
-            )
-        })
+        wanted.then(|| TakeWarning::head_unfiltered(self.rate_hz))
     }
 
     /// The warnings of labels that are swapped or stand at one place, found by solving the whole take
@@ -60,14 +49,14 @@ impl JoinedTake<'_> {
         &self,
         operators: &Operators,
         spec: &MethodSpec,
-    ) -> Result<Vec<String>, SolveError> {
+    ) -> Result<Vec<TakeWarning>, SolveError> {
         if !is_fitted(spec) {
             return Ok(Vec::new());
         }
         let markers = self.markers_of(operators, spec, 0..self.frame_count())?;
         let solved = solve_markers(operators, &self.whole(&markers), spec, &mut || 0.0)?;
         let problems = self.label_problems(operators, &solved);
-        Ok(problems.iter().map(LabelProblem::sentence).collect())
+        Ok(problems.into_iter().map(TakeWarning::Labels).collect())
     }
 
     /// Labels that are swapped or stand at one place. Not looked for where displacements are

@@ -230,7 +230,7 @@ fn prepare_clip(
     };
     let solved = solve_packs(&operators.bytes, &take.bytes, &spec)
         .map_err(|e| PrepareError::new(method_pointer(clip), e))?;
-    remarks.warnings.extend(solved.warnings.iter().map(|w| (at.clone(), w.clone())));
+    remarks.warnings.extend(solved.warnings.iter().map(|w| (at.clone(), w.to_string())));
     let gaze = GazeStatistics::of(&solved.shape_names, &solved.weights);
     let gaze = gaze.and_then(|gaze| gaze.warning(0));
     remarks.warnings.extend(gaze.map(|w| (at.clone(), format!("{}: {w}", clip.id))));
@@ -365,7 +365,8 @@ fn recorded(
             .map_err(|error| PrepareError::new(&recording.pointer, error.to_string()))?;
     warnings.extend(recording.warnings.iter().cloned());
     warnings.extend(
-        names.warnings(!recording.is_computed).into_iter().map(|w| (recording.pointer.clone(), w)),
+        (names.warnings(!recording.is_computed).iter())
+            .map(|w| (recording.pointer.clone(), w.to_string())),
     );
     let rate_hz = table.rate_hz().ok_or_else(|| {
         PrepareError::new(&recording.pointer, "fewer than two frames; give a longer recording")

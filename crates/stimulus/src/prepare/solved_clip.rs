@@ -16,7 +16,7 @@ use super::{PrepareError, Remarks};
 use crate::checks::is_fitted;
 use crate::provenance::Provenance;
 use crate::take::{held_shapes, untold_shapes};
-use crate::{JoinedTake, SetUp, SolveError, Training, surface_avatar};
+use crate::{JoinedTake, SetUp, SolveError, TakeWarning, Training, surface_avatar};
 
 /// Blendshapes that the stage's shader holds.
 const MOST_STAGE_SHAPES: usize = 256;
@@ -88,7 +88,7 @@ pub(super) fn to_solve(
     };
     let told = joined.shape_rows(wanted.written, spec, &opened);
     let said = held_shapes(&told).into_iter().chain(untold_shapes(&opened, spec));
-    remarks.warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
+    remarks.warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w.to_string())));
     let key = take_key(wanted, &markers, joined.scales_by_bank());
     let take = cache.pack(&key.json("pack", "take"), || {
         let take = joined
@@ -106,17 +106,19 @@ fn look_at_joined(
     remarks: &mut Remarks,
 ) -> Result<(), PrepareError> {
     let Wanted { spec, training, performance, avatar, .. } = *wanted;
-    let said = joined.warnings().iter().cloned();
+    let said = joined.warnings().iter().map(TakeWarning::in_a_study);
     remarks.warnings.extend(said.map(|w| (performance.capture_pointer.clone(), w)));
     if let Some(training) = training {
         let pointer = format!("{}/training", wanted.method_pointer);
         let said = training.warnings(&avatar.avatar.shape_names);
-        remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
+        remarks.warnings.extend(said.iter().map(|w| (pointer.clone(), w.to_string())));
     }
     let unfiltered = joined.unfiltered_head(spec);
-    remarks.warnings.extend(unfiltered.map(|w| (performance.capture_pointer.clone(), w)));
+    remarks
+        .warnings
+        .extend(unfiltered.map(|w| (performance.capture_pointer.clone(), w.to_string())));
     let moving = joined.head_warning().map_err(|e| performance.error(e.into()))?;
-    remarks.warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w)));
+    remarks.warnings.extend(moving.map(|w| (performance.capture_pointer.clone(), w.to_string())));
     Ok(())
 }
 
@@ -202,9 +204,9 @@ fn look_at_labels(
     if remarks.looked_over.insert([avatar.key.clone(), performance.take_key.clone()]) {
         let mut said = joined.label_warnings(operators, spec).map_err(|e| wanted.error(e))?;
         let advice = joined.smoothing_advice(operators, spec, None).map_err(|e| wanted.error(e))?;
-        said.extend(advice.map(|advice| advice.in_a_study()));
+        said.extend(advice.map(TakeWarning::Smoothing));
         let pointer = &performance.capture_pointer;
-        remarks.warnings.extend(said.into_iter().map(|w| (pointer.clone(), w)));
+        remarks.warnings.extend(said.iter().map(|w| (pointer.clone(), w.in_a_study())));
     }
     Ok(())
 }

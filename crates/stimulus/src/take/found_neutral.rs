@@ -5,6 +5,7 @@ use std::ops::Range;
 use mimique_mocap::{Capture, stabilise, stillest};
 
 use super::joined::NEUTRAL_FRAMES;
+use crate::TakeWarning;
 
 /// The neutral where none is named: the stillest second of the face, its head held still; and what
 /// is to be said of it. The first `face` labels are those of the face.
@@ -13,7 +14,7 @@ pub(crate) fn found_neutral(
     labels: &[String],
     face: usize,
     head: &[String],
-) -> (Range<usize>, String) {
+) -> (Range<usize>, TakeWarning) {
     let columns: Vec<usize> = labels.iter().filter_map(|l| capture.marker_index(l)).collect();
     let mut part = Capture {
         labels: labels.to_vec(),
@@ -23,26 +24,16 @@ pub(crate) fn found_neutral(
         notes: Vec::new(),
         ..*capture
     };
-    let mut held = "";
-    if !head.is_empty() && stabilise(&mut part, head).is_err() {
-        held = ", the head not held still";
-    }
+    let head_held = head.is_empty() || stabilise(&mut part, head).is_ok();
     let width = part.labels.len();
     part.positions = part.positions.chunks(width).flat_map(|row| row[..face].to_vec()).collect();
     part.labels.truncate(face);
     match stillest(&part, 1.0) {
         Some(found) => {
-            let Range { start, end } = found.frames;
             let mm = found.deviation * capture.unit.metres() * 1e3;
-            let said = format!(
-                "no neutral is named: frames {start}:{end} are taken, the stillest second \
-                 ({mm:.2} mm rms{held}); see whether the face is neutral there, or name it"
-            );
-            (start..end, said)
+            let said = TakeWarning::neutral_found(&found.frames, mm, head_held);
+            (found.frames, said)
         }
-        None => (
-            0..NEUTRAL_FRAMES.min(capture.frames()),
-            "no neutral is named and no marker is seen: the first frames are taken".to_owned(),
-        ),
+        None => (0..NEUTRAL_FRAMES.min(capture.frames()), TakeWarning::NeutralUnseen),
     }
 }

@@ -8,8 +8,9 @@ use mimique_mocap::Capture;
 use mimique_solver::FrontEnd;
 
 use super::SolveError;
-use super::joined::{JoinedTake, metres, some};
-use crate::{AvatarSkin, GivenGaze};
+use super::joined::{JoinedTake, metres};
+use crate::warning::some;
+use crate::{AvatarSkin, GivenGaze, TakeWarning};
 
 /// Half of the distance between the eyes where the avatar has no eyeballs, metres: half of the mean of adults, 63 mm
 /// (Dodgson, Variation and extrema of human interpupillary distance, 2004).
@@ -128,7 +129,7 @@ impl JoinedTake<'_> {
     }
 
     /// What should be said where the given gaze goes beyond what the avatar's eyes turn by.
-    pub(crate) fn gaze_beyond_eyes(&self) -> Option<String> {
+    pub(crate) fn gaze_beyond_eyes(&self) -> Option<TakeWarning> {
         let gaze = self.gaze.as_ref()?;
         let wanted: Vec<GazeAngles> = match &gaze.given {
             GivenGaze::Held(held) => vec![*held],
@@ -146,13 +147,7 @@ impl JoinedTake<'_> {
                 || (shown.elevation - look.elevation).abs() > BEYOND_DEG
         };
         let count = wanted.iter().filter(|look| is_beyond(look)).count();
-        (count > 0).then(|| {
-            format!(
-                "the given gaze goes beyond what the avatar's eyes turn by in {count} of {} frames: it is held at \
-                 their limit there; look at the angles, which are degrees to the person's left and upwards",
-                wanted.len()
-            )
-        })
+        (count > 0).then_some(TakeWarning::GazeBeyondAvatar { frames: count, of: wanted.len() })
     }
 }
 

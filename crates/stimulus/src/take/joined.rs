@@ -9,14 +9,14 @@ use mimique_solver::{
     Method, MethodSpec, OperatorError, OperatorOptions, Operators, RbfError, SurfaceDepth,
     SurfaceResponse,
 };
-use mimique_study::text::counted;
 
 use super::adjustments::{refuse_flat, scale_rule};
 use super::found_neutral::found_neutral;
 use super::gaze::{JoinedGaze, given_gaze};
 use super::lids::JoinedLid;
 use super::{SolveError, TakeOptions, Training};
-use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule};
+use crate::warning::some;
+use crate::{AvatarSkin, Depth, MapOrigin, MarkerMap, ScaleRule, TakeWarning};
 
 /// Frames that a neutral should be the mean of.
 pub(crate) const NEUTRAL_FRAMES: usize = 60;
@@ -54,7 +54,7 @@ pub struct JoinedTake<'a> {
     /// Share of the head's own motion that is shown.
     pub(crate) head_motion: f64,
     pub(crate) map_origin: MapOrigin,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<TakeWarning>,
 }
 
 /// The face markers of a take, and how their displacements are read.
@@ -81,12 +81,8 @@ impl<'a> JoinedTake<'a> {
         let mut warnings = Vec::new();
         let FaceSites { lid_places, markers, absent } = face_sites(skin, capture, map)?;
         if !absent.is_empty() {
-            warnings.push(format!(
-                "{} of the map {} not in the capture: {}",
-                counted(absent.len(), "marker"),
-                if absent.len() == 1 { "is" } else { "are" },
-                some(absent.iter().map(|site| site.label.as_str()))
-            ));
+            let labels = absent.into_iter().map(|site| site.label).collect();
+            warnings.push(TakeWarning::MarkersAbsent { labels });
         }
         let head = options.head.as_ref().unwrap_or(&map.head);
         let neutral = options.neutral.clone().or_else(|| map.neutral.clone());
@@ -99,8 +95,7 @@ impl<'a> JoinedTake<'a> {
         joined.repair = options.repair.clone();
         joined.head_motion = options.head_motion;
         if options.head_motion > 0.0 && joined.columns.head.is_none() {
-            let said = "no head markers are named: the head is shown still";
-            joined.warnings.push(said.to_owned());
+            joined.warnings.push(TakeWarning::HeadShownStill);
         }
         joined.map_origin = map.origin;
         joined.add_lids(capture, map, &lid_places);
@@ -172,7 +167,7 @@ impl<'a> JoinedTake<'a> {
         TakeMarkers { markers, scale, depth }: TakeMarkers,
         head: &[String],
         neutral: Option<Range<usize>>,
-        mut warnings: Vec<String>,
+        mut warnings: Vec<TakeWarning>,
     ) -> Result<Self, SolveError> {
         let frames = capture.frames();
         if frames == 0 {
@@ -181,10 +176,7 @@ impl<'a> JoinedTake<'a> {
         let (labels, columns) = columns_of(&markers, head, capture)?;
         let head_columns = columns.head.as_deref().unwrap_or_default();
         if head_columns.is_empty() {
-            warnings.push(
-                "no head markers are named: the capture is taken to be free of head motion"
-                    .to_owned(),
-            );
+            warnings.push(TakeWarning::NoHeadMarkers);
         }
         let neutral = neutral.unwrap_or_else(|| {
             let head: Vec<String> = head_columns.iter().map(|&c| labels[c].clone()).collect();
@@ -193,10 +185,8 @@ impl<'a> JoinedTake<'a> {
             found
         });
         if neutral.start < neutral.end && neutral.len() < NEUTRAL_FRAMES {
-            warnings.push(format!(
-                "the neutral is the mean of {} frames: {NEUTRAL_FRAMES} or more are steadier",
-                neutral.len()
-            ));
+            let (frames, better) = (neutral.len(), NEUTRAL_FRAMES);
+            warnings.push(TakeWarning::FewNeutralFrames { frames, better });
         }
         let positions = metres(capture, &labels);
         if depth == Depth::Measured {
@@ -224,7 +214,7 @@ impl<'a> JoinedTake<'a> {
     }
 
     /// What should be said of map, capture and avatar together.
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[TakeWarning] {
         &self.warnings
     }
 
@@ -418,15 +408,4 @@ pub(crate) fn metres(capture: &Capture, labels: &[String]) -> Vec<f64> {
             })
         })
         .collect()
-}
-
-/// The first few of some labels.
-pub(crate) fn some<'l>(labels: impl Iterator<Item = &'l str>) -> String {
-    let labels: Vec<&str> = labels.collect();
-    let named = labels.iter().take(6).copied().collect::<Vec<_>>().join(", ");
-    match labels.len() {
-        0 => "none".to_owned(),
-        1..=6 => named,
-        more => format!("{named} and {} more", more - 6),
-    }
 }

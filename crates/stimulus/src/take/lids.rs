@@ -10,7 +10,7 @@ use mimique_solver::{FrontEnd, Gaze, Group, MarkerSite, MethodSpec, Untold};
 
 use super::joined::{JoinedTake, metres};
 use super::lid_opening::{LidEdge, LidRange, actor_range, lid_weights};
-use crate::{AvatarSkin, MarkerMap};
+use crate::{AvatarSkin, MarkerMap, TakeWarning};
 
 /// A lid marker of the capture and the shapes of the avatar that it drives.
 #[derive(Debug, Clone)]
@@ -76,15 +76,13 @@ impl JoinedTake<'_> {
         for lid in &map.lids {
             let place = lid_places.iter().find(|site| site.label == lid.marker);
             let (Some(place), true) = (place, capture.marker_index(&lid.marker).is_some()) else {
-                self.warnings.push(format!("lid marker {} is not in the capture", lid.marker));
+                self.warnings.push(TakeWarning::LidMarkerAbsent { marker: lid.marker.clone() });
                 continue;
             };
             let vertex = place.vertex();
             let Some(closed) = travel_of(self.skin, &lid.closed, vertex) else {
-                self.warnings.push(format!(
-                    "lid marker {}: the avatar has no shape {}; name the shape that closes the lid",
-                    lid.marker, lid.closed
-                ));
+                let (marker, shape) = (lid.marker.clone(), lid.closed.clone());
+                self.warnings.push(TakeWarning::LidShapeAbsent { marker, shape });
                 continue;
             };
             let wide = lid.wide.as_ref().and_then(|name| travel_of(self.skin, name, vertex));

@@ -2,12 +2,15 @@
 
 use mimique_clip::FrameStatistics;
 use mimique_solver::{
-    Fit, FrameReport, Kernel, Method, MethodSpec, Operators, Regression, bank_columns, is_told,
+    Combination, Fit, FrameReport, Kernel, Method, MethodSpec, Operators, Regression, bank_columns,
+    is_told,
 };
 use serde::Serialize;
 
 use super::ShapeRow;
+use crate::TakeWarning;
 use crate::checks::{GazeStatistics, HeadMarker, LabelProblem, SmoothingAdvice};
+use crate::warning::as_sentences;
 
 /// The seconds of each stage of a solve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -131,8 +134,9 @@ pub struct SolveReport {
     pub summary: FrameStatistics,
     /// The seconds of each stage.
     pub seconds: StageSeconds,
-    /// What should be said, a sentence each.
-    pub warnings: Vec<String>,
+    /// What should be said; a sentence each in JSON.
+    #[serde(serialize_with = "as_sentences")]
+    pub warnings: Vec<TakeWarning>,
     /// How still the head markers are on the head.
     pub head_markers: Vec<HeadMarker>,
     /// Labels that are swapped or stand at one place.
@@ -149,25 +153,18 @@ pub struct SolveReport {
 }
 
 /// Shapes that the markers do not tell and that are solved for all the same.
-pub(crate) fn untold_shapes(operators: &Operators, spec: &MethodSpec) -> Option<String> {
+pub(crate) fn untold_shapes(operators: &Operators, spec: &MethodSpec) -> Option<TakeWarning> {
     // A surface has no shapes; what a regression knows of a shape it knows from its training.
     if matches!(spec.method, Method::ThinShellSurface | Method::Regression) {
         return None;
     }
     let parts = operators.parts();
     let squares = operators.marker_squares();
-    let names: Vec<&str> = (parts.shape_names.iter().zip(squares))
+    let shapes: Vec<String> = (parts.shape_names.iter().zip(squares))
         .filter(|(name, square)| !is_told(*square) && !spec.locked.contains(name))
-        .map(|(name, _)| name.as_str())
+        .map(|(name, _)| name.clone())
         .collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "the markers do not tell the weights of {} shapes, which noise of 1 mm moves over their whole range: {}; \
-             what they get is the method's prior: lock them, or place markers where they move",
-            names.len(),
-            names.join(", ")
-        )
-    })
+    (!shapes.is_empty()).then_some(TakeWarning::ShapesUntold { shapes })
 }
 
 /// That the least of many weights was chosen, and between which shapes.
@@ -175,7 +172,7 @@ pub(crate) fn dependent_shapes(
     operators: &Operators,
     spec: &MethodSpec,
     fit: &Fit,
-) -> Option<String> {
+) -> Option<TakeWarning> {
     if !fit.chooses_least_norm() {
         return None;
     }
@@ -185,26 +182,17 @@ pub(crate) fn dependent_shapes(
         .collect();
     let rows = parts.marker_deltas.chunks_exact(parts.shape_names.len());
     let bank: Vec<f64> = rows.flat_map(|row| free.iter().map(|&k| row[k])).collect();
-    let name = |k: usize| parts.shape_names[free[k]].as_str();
+    let name = |k: usize| parts.shape_names[free[k]].clone();
     let mut dependent = bank_columns(&bank, free.len(), 0.0).dependent;
     // Of two opposite shapes the least weights leave one at rest: the same face, and nothing to say.
     let opposites = dependent.extract_if(.., |c| c.of.iter().all(|&(_, weight)| weight < 0.0));
     if opposites.count() > 0 && dependent.is_empty() {
         return None;
     }
-    let combinations: Vec<String> = dependent
-        .iter()
-        .map(|combination| {
-            let of: Vec<&str> = combination.of.iter().map(|&(k, _)| name(k)).collect();
-            format!("{} (of {})", name(combination.shape), of.join(", "))
-        })
-        .collect();
-    let which = match combinations.is_empty() {
-        true => "shapes that nearly depend on each other".to_owned(),
-        false => combinations.join("; "),
+    let combination = |combination: Combination| {
+        let of = combination.of.iter().map(|&(k, _)| name(k)).collect();
+        (name(combination.shape), of)
     };
-    Some(format!(
-        "the markers cannot tell these shapes from combinations of others: {which}; of the weights \
-         that fit equally well the least are taken; lock the shapes that the take does not need"
-    ))
+    let combinations = dependent.into_iter().map(combination).collect();
+    Some(TakeWarning::ShapesDependent { combinations })
 }

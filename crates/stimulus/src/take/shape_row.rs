@@ -8,6 +8,7 @@ use mimique_solver::{
 use serde::Serialize;
 
 use super::JoinedTake;
+use crate::TakeWarning;
 
 /// How a shape gets its weight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -122,18 +123,8 @@ fn free_row(names: &[String], told: &ShapeSensitivity) -> ShapeRow {
 }
 
 /// What is to be said of the shapes that stay at 0 since the markers do not tell them; none where there are none.
-pub(crate) fn held_shapes(rows: &[ShapeRow]) -> Option<String> {
-    let held: Vec<&str> = (rows.iter())
-        .filter(|row| row.state == ShapeState::Held)
-        .map(|row| row.shape.as_str())
-        .collect();
-    let (count, names) = (held.len(), held.join(", "));
-    (count > 0).then(|| {
-        let be = if count == 1 { "shape stays" } else { "shapes stay" };
-        format!(
-            "{count} {be} at 0, since the markers do not tell {}: {names}; place markers where they move, drive lids \
-             by lid markers, or take --untold solve (\"untold\": \"solve\")",
-            if count == 1 { "its weight" } else { "their weights" }
-        )
-    })
+pub(crate) fn held_shapes(rows: &[ShapeRow]) -> Option<TakeWarning> {
+    let held = rows.iter().filter(|row| row.state == ShapeState::Held);
+    let shapes: Vec<String> = held.map(|row| row.shape.clone()).collect();
+    (!shapes.is_empty()).then_some(TakeWarning::ShapesHeld { shapes })
 }

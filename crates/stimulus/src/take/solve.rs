@@ -11,7 +11,10 @@ use super::report::{
 };
 use super::{JoinedTake, SetUp, SolveError, Training};
 use crate::checks::{HeadMarker, LabelProblem, is_fitted, moving_skin};
-use crate::{AvatarSkin, Depth, GazeStatistics, GivenGaze, MarkerMap, ScaleRule, SmoothingAdvice};
+use crate::{
+    AvatarSkin, Depth, GazeStatistics, GivenGaze, MarkerMap, ScaleRule, SmoothingAdvice,
+    TakeWarning,
+};
 
 /// What the user decides beside the method.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -142,10 +145,10 @@ fn report(
     let summary = FrameStatistics::of(&solution.reports);
     let mut warnings = joined.warnings.clone();
     warnings.extend(moving_skin(&head_markers));
-    warnings.extend(label_problems.iter().map(LabelProblem::sentence));
-    warnings.extend(smoothing.as_ref().map(SmoothingAdvice::sentence));
+    warnings.extend(label_problems.iter().cloned().map(TakeWarning::Labels));
+    warnings.extend(smoothing.map(TakeWarning::Smoothing));
     warnings.extend(untold_shapes(operators, spec));
-    warnings.extend(summary.warnings(joined.first_frame));
+    warnings.extend(summary.warnings(joined.first_frame).into_iter().map(TakeWarning::Frames));
     let gaze = GazeStatistics::of(&operators.parts().shape_names, &solution.weights);
     warnings.extend(gaze.as_ref().and_then(|gaze| gaze.warning(joined.first_frame)));
     SolveReport {
@@ -177,8 +180,7 @@ fn report(
 }
 
 /// What should be said of pieces of a surface that no marker moves.
-fn adrift(surface: &SurfaceResponse) -> Option<String> {
-    let count = surface.without_marker;
-    (count > 0)
-        .then(|| format!("{count} vertices are in pieces of the skin without a marker: they rest"))
+fn adrift(surface: &SurfaceResponse) -> Option<TakeWarning> {
+    let vertices = surface.without_marker;
+    (vertices > 0).then_some(TakeWarning::VerticesAdrift { vertices })
 }

@@ -9,9 +9,10 @@ use mimique_solver::{
 };
 use serde_json::json;
 
-use super::joined::some;
 use super::{JoinedTake, SolveError};
+use crate::TakeWarning;
 use crate::provenance::Provenance;
+use crate::warning::some;
 
 /// A take with the weights that were played in it, a row per frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,23 +43,20 @@ impl Training {
     }
 
     /// What should be said of the weights' names against an avatar's shapes.
-    pub fn warnings(&self, shape_names: &[String]) -> Vec<String> {
+    pub fn warnings(&self, shape_names: &[String]) -> Vec<TakeWarning> {
         let map = mimique_avatar::map_shapes(shape_names, &self.weights.shape_names);
         let mut out = Vec::new();
-        let unused: Vec<&str> =
-            map.unused.iter().map(|&c| self.weights.shape_names[c].as_str()).collect();
+        let unused: Vec<String> =
+            map.unused.iter().map(|&c| self.weights.shape_names[c].clone()).collect();
         if !unused.is_empty() {
-            out.push(format!("training: the avatar has no shape {}: left out", unused.join(", ")));
+            out.push(TakeWarning::TrainingUnused { shapes: unused });
         }
-        let unlearnt: Vec<&str> = (shape_names.iter().zip(&map.terms))
+        let unlearnt: Vec<String> = (shape_names.iter().zip(&map.terms))
             .filter(|(_, terms)| terms.is_empty())
-            .map(|(name, _)| name.as_str())
+            .map(|(name, _)| name.clone())
             .collect();
         if !unlearnt.is_empty() {
-            out.push(format!(
-                "training: no weights of {}: they are learnt to be 0",
-                unlearnt.join(", ")
-            ));
+            out.push(TakeWarning::TrainingUnlearnt { shapes: unlearnt });
         }
         out
     }

@@ -7,6 +7,8 @@ use mimique_mocap::WeightsTable;
 use mimique_solver::LARGEST_WEIGHT;
 use serde::Serialize;
 
+use crate::TakeWarning;
+
 /// Recorded weights under an avatar's shapes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedWeights {
@@ -121,26 +123,24 @@ impl RecordedWeights {
 }
 
 impl RecordedNames {
-    /// What should be said, a sentence each; of shapes that no column drives, too, unless what was recorded is
-    /// meant to leave them still.
-    pub fn warnings(&self, of_held: bool) -> Vec<String> {
+    /// What should be said; of shapes that no column drives, too, unless what was recorded is meant to leave
+    /// them still.
+    pub fn warnings(&self, of_held: bool) -> Vec<TakeWarning> {
         let mut out = Vec::new();
         if self.driven.is_empty() {
-            out.push(
-                "no column of the file is a shape of the avatar: the face stays neutral".into(),
-            );
+            out.push(TakeWarning::NoColumnIsAShape);
         }
-        let unused: Vec<&str> =
-            // Few avatars have a chest, and a face is whole without it.
-            self.unused.iter().map(String::as_str).filter(|name| *name != BREATH).collect();
-        if !unused.is_empty() {
-            out.push(format!("the avatar has no shape {}: left out", unused.join(", ")));
+        // Few avatars have a chest, and a face is whole without it.
+        let columns: Vec<String> =
+            self.unused.iter().filter(|name| *name != BREATH).cloned().collect();
+        if !columns.is_empty() {
+            out.push(TakeWarning::ColumnsUnused { columns });
         }
         // What shows the body is there for what computes it; nobody misses it elsewhere.
-        let held: Vec<&str> =
-            self.held.iter().map(String::as_str).filter(|name| !shows_body(name)).collect();
-        if of_held && !held.is_empty() {
-            out.push(format!("no column drives {}: held at 0", held.join(", ")));
+        let shapes: Vec<String> =
+            self.held.iter().filter(|name| !shows_body(name)).cloned().collect();
+        if of_held && !shapes.is_empty() {
+            out.push(TakeWarning::ShapesNotDriven { shapes });
         }
         out
     }
@@ -180,7 +180,8 @@ mod tests {
         assert_eq!(split.names.unused, ["HeadYaw"]);
         assert_eq!(split.names.held, ["mouthSmile_R"]);
         assert_eq!(split.names.driven.len(), 7);
-        let said = split.names.warnings(true);
+        let said: Vec<String> =
+            split.names.warnings(true).iter().map(ToString::to_string).collect();
         assert!(said[0].contains("HeadYaw") && said[1].contains("mouthSmile_R"), "{said:?}");
 
         // The other way round: halves of both sides.
@@ -196,7 +197,7 @@ mod tests {
         );
         assert!(back.names.held.is_empty());
         let nothing = RecordedWeights::of(&phone, &texts(&["smirk"])).unwrap();
-        assert!(nothing.names.warnings(true)[0].contains("stays neutral"));
+        assert_eq!(nothing.names.warnings(true)[0], TakeWarning::NoColumnIsAShape);
     }
 
     #[test]

@@ -14,7 +14,8 @@ use mimique_exertion::{
 use mimique_stimulus::{Drawn, ExertionDrawing};
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 use settings::{ModelChoice, Refused, Settings};
 use source::{Moved, OpenedFile, Worked};
 
@@ -128,13 +129,13 @@ impl Workspace {
         });
         let findings: Vec<Finding> =
             Finding::of_clip(&series, &clip).into_iter().chain(findings).collect();
-        let words = |warning: bool| -> Vec<String> {
-            findings.iter().filter(|f| f.is_warning() == warning).map(|f| words(*f)).collect()
+        let found = |warning: bool| -> Vec<Value> {
+            findings.iter().filter(|f| f.is_warning() == warning).map(|f| told(*f)).collect()
         };
         let facts = json!({
             "name": name, "sourceSpanS": span_s, "drawing": drawing, "person": of(&person),
-            "end": end(&series, &clip), "warnings": words(true),
-            "notes": notes.into_iter().chain(words(false)).collect::<Vec<_>>(),
+            "end": end(&series, &clip), "warnings": found(true),
+            "notes": notes, "remarks": found(false),
             "face": self.faced(&clip)?,
         });
         self.exertion.made = Some(Made { settings, name, person, expression, series, clip });
@@ -191,8 +192,8 @@ fn end(series: &Series, clip: &Clip) -> Value {
     })
 }
 
-/// A finding with the page's own remedy.
-fn words(finding: Finding) -> String {
+/// A finding for the page: its code and values, and as `text` its sentence in English with the page's own remedy.
+fn told(finding: Finding) -> Value {
     let remedy = match finding {
         Finding::NearMaximum { .. } => " (the heart by steady settles)",
         Finding::OverLimit { .. } => " (frames a second, where the capture is opened)",
@@ -200,5 +201,7 @@ fn words(finding: Finding) -> String {
         Finding::CutFrames { .. } => " (expressivity)",
         Finding::Repeated { .. } | Finding::Jitter { .. } => "",
     };
-    format!("{finding}{remedy}")
+    let mut told = json!(finding);
+    told["text"] = json!(format!("{finding}{remedy}"));
+    told
 }

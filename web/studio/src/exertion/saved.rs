@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use super::settings::{HeartChoice, ModelChoice, SourceChoice};
 use super::{Made, SLOT};
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 impl Workspace {
     fn exertion_made(&self) -> Result<&Made, Problem> {

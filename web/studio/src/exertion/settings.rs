@@ -5,7 +5,7 @@ use mimique_study::BuiltinMotion;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::workspace::Problem;
+use crate::problem::Problem;
 
 /// Where the motion comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

@@ -8,7 +8,8 @@ use mimique_mocap::{
 use mimique_stimulus::{ExertionPart, ExertionPartError, built_in_motion};
 
 use super::settings::{Refused, SourceChoice};
-use crate::workspace::{Problem, Workspace, read_capture};
+use crate::problem::Problem;
+use crate::workspace::{Workspace, read_capture};
 
 /// A file that was opened for its body.
 #[derive(Debug)]

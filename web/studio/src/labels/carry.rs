@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use super::WHAT;
 use super::boxes::{LabelBox, outside};
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 /// Tiers of an ELAN document: confirmed labels, suggested ones, how probable those are.
 const TIERS: [&str; 3] = ["labels", "labels (suggested)", "labels (confidence)"];

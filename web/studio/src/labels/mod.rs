@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 
 use boxes::{Boxes, LabelBox};
 
-use crate::workspace::{Problem, Take, Workspace};
+use crate::problem::Problem;
+use crate::workspace::{Take, Workspace};
 
 /// What errors of labels are about.
 const WHAT: &str = "labels";

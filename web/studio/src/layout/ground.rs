@@ -8,7 +8,8 @@ use mimique_solver::SkinGradients;
 use mimique_stimulus::RecordedWeights;
 
 use super::WHAT;
-use crate::workspace::{Problem, Take as StudioTake, Workspace};
+use crate::problem::Problem;
+use crate::workspace::{Take as StudioTake, Workspace};
 
 /// What stays while markers are dragged.
 #[derive(Debug)]

@@ -9,7 +9,8 @@ use mimique_stimulus::ADVISED_SMOOTHING;
 use serde_json::{Value, json};
 
 use super::{OnHead, Rehearsed, WHAT, none};
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 /// Seed of everything that is drawn.
 const SEED: u64 = 1;

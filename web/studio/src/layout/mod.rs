@@ -12,7 +12,8 @@ use mimique_solver::MarkerSite;
 use mimique_stimulus::{MarkerMap, MarkerPlace};
 use serde_json::{Value, json};
 
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 use ground::Ground;
 
 /// What errors of layouts are about.

@@ -4,7 +4,8 @@ use mimique_layout::{DISTANCE_M, MotionSource};
 use serde_json::{Value, json};
 
 use super::{LayoutDesk, OnHead, none};
-use crate::workspace::{Problem, Workspace};
+use crate::problem::Problem;
+use crate::workspace::Workspace;
 
 impl LayoutDesk {
     /// The expected error of some markers in their order, before the first, after it, and so on, and without

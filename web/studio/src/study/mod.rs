@@ -15,7 +15,8 @@ use mimique_stimulus::{TakeSegment, identifier, study_segments};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use crate::workspace::{Origin, Problem, Take, Workspace};
+use crate::problem::{Problem, Trouble};
+use crate::workspace::{Origin, Take, Workspace};
 
 /// Folder of the files in the study's folder.
 const FOLDER: &str = "stimuli";
@@ -154,7 +155,7 @@ impl Workspace {
             }
         };
         let mut capture = match &self.take {
-            None => return Err(Problem("no capture yet; open one first".to_owned())),
+            None => return Err(Trouble::NoCapture.into()),
             Some(Take::Weights { name, file_rate_hz, .. }) => {
                 let mut capture = Map::new();
                 capture.insert("file".to_owned(), json!(folder.copy("take", name)?));
@@ -232,7 +233,7 @@ impl Workspace {
             methods.insert(name, Value::Object(method));
         }
         if methods.is_empty() {
-            return Err(Problem("no face is solved yet; solve one first".to_owned()));
+            return Err(Trouble::NoFaceSolved.into());
         }
         Ok(methods)
     }
