@@ -3,6 +3,7 @@ import { openStage, preparedClip, putClip } from "../stage/host.js";
 import { made } from "../stage/player.js";
 import { ExertionPictures } from "../drawing/exertion.js";
 import { ExertionSettings } from "./exertion-settings.js";
+import { newest } from "./newest.js";
 import { isShown, whenShown } from "./tabs.js";
 import { numeral, say } from "./texts.js";
 import { findingWords, warningWords } from "./words-engine.js";
@@ -24,8 +25,7 @@ export class Exertion {
   #stage = null;
   #drawing = null;
   #pack = { key: null, bytes: null };
-  #isBusy = false;
-  #isStale = false;
+  #computed = newest(() => this.#compute());
   // The inputs as they were changed last.
   #known;
   facts = null;
@@ -107,19 +107,7 @@ export class Exertion {
   /// Computes and shows; of what is set meanwhile the last counts.
   async update() {
     if (!isShown("exertion")) return;
-    this.#isStale = true;
-    if (this.#isBusy) return;
-    this.#isBusy = true;
-    try {
-      while (this.#isStale) {
-        this.#isStale = false;
-        await this.#compute();
-      }
-    } catch (error) {
-      this.#page.report(error);
-    } finally {
-      this.#isBusy = false;
-    }
+    await this.#computed().catch((error) => this.#page.report(error));
   }
 
   // A motion goes on for minutes, a recording as long as it is.

@@ -2,6 +2,7 @@
 import { made } from "../stage/player.js";
 import { draw } from "../drawing/lines.js";
 import { movable } from "./drag.js";
+import { newest } from "./newest.js";
 import { isShown, whenShown } from "./tabs.js";
 import { say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
@@ -17,8 +18,8 @@ export class Timeline {
   #curve = null;
   #rate = 1;
   #frames = 1;
-  #isStale = false;
-  #isBusy = false;
+  // One question to the worker at a time; the newest place of the slider counts.
+  #follow = newest(() => this.#suggest());
 
   /// `page`: {history, slot(), seek(ms), timeMs(), changed(segments), save(name, text), report(error)}
   constructor(page) {
@@ -58,21 +59,6 @@ export class Timeline {
     const put = async (others) => this.#put((await callWorker("setExpressions", JSON.stringify(edited(others)))).segments);
     this.#page.history.put({ what, same, about: "segments", undo: () => put(before), redo: () => put(after) });
     this.#put(segments);
-  }
-
-  // One question to the worker at a time; the newest place of the slider counts.
-  async #follow() {
-    this.#isStale = true;
-    if (this.#isBusy) return;
-    this.#isBusy = true;
-    try {
-      while (this.#isStale) {
-        this.#isStale = false;
-        await this.#suggest();
-      }
-    } finally {
-      this.#isBusy = false;
-    }
   }
 
   async #suggest() {

@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place, storedEvents, until } from "./lib/participant.mjs";
+import { go, phase, place, storedEvents, through, until } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text } from "./lib/small_study.mjs";
 
@@ -71,37 +71,23 @@ for (const [name, asked] of Object.entries(ASKED)) test(`adaptive: levels follow
   const fetched = [];
   page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
   try {
-    await page.goto(`${server.url}/s/levels/?backend=webgl2`);
-    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(page);
-    let trials = 0;
-    while (here.view !== "end") {
-      if (here.view === "receipt") {
-        here = await leave(page, here, 60_000);
-        continue;
-      }
-      if (here.view === "trial") {
-        trials += 1;
-        await phase(page, "ready", 120_000);
-        await until("the level is stored", async () => (await chosen(page, server)).length >= trials);
-        const shown = (await chosen(page, server))[trials - 1];
-        assert.equal(await page.locator(".stage-frame.pair figure").count(), 2);
-        await go(page, "mouse");
-        if (trials === asked.reloadedAt) {
-          await phase(page, "playing");
-          await page.reload();
-          await page.waitForSelector("main[data-view=trial]", { timeout: 30_000 });
-          assert.equal((await place(page)).step, here.step, "the same trial");
-          await phase(page, "ready", 120_000);
-          assert.equal((await chosen(page, server)).length, trials, "its level is chosen once");
-          await go(page, "mouse");
-        }
-        await phase(page, "answering", 120_000);
-        await page.locator(`fieldset[data-question=${asked.question.id}] label:has(input[value=${asked.answer(shown)}])`).click();
-      }
+    const trials = await through(page, `${server.url}/s/levels/?backend=webgl2`, async (here, trials) => {
+      await until("the level is stored", async () => (await chosen(page, server)).length >= trials);
+      const shown = (await chosen(page, server))[trials - 1];
+      assert.equal(await page.locator(".stage-frame.pair figure").count(), 2);
       await go(page, "mouse");
-      here = await leave(page, here, 60_000);
-    }
+      if (trials === asked.reloadedAt) {
+        await phase(page, "playing");
+        await page.reload();
+        await page.waitForSelector("main[data-view=trial]", { timeout: 30_000 });
+        assert.equal((await place(page)).step, here.step, "the same trial");
+        await phase(page, "ready", 120_000);
+        assert.equal((await chosen(page, server)).length, trials, "its level is chosen once");
+        await go(page, "mouse");
+      }
+      await phase(page, "answering", 120_000);
+      await page.locator(`fieldset[data-question=${asked.question.id}] label:has(input[value=${asked.answer(shown)}])`).click();
+    }, { hands: "mouse" });
     assert.equal(trials, asked.trials);
     assert.deepEqual(browser.errors, [], "the console is clean");
     assert.ok(fetched.some((path) => path.endsWith("/adaptive_bg.wasm")), "the module of levels is loaded");

@@ -11,7 +11,7 @@ import { pathToFileURL } from "node:url";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { answer, go, phase, through } from "./lib/participant.mjs";
 import { mimique, root, serve } from "./lib/server.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -72,27 +72,13 @@ test("arena: a person's votes are pooled by the hashes of what was shown", { ski
   const { page } = browser;
   const shots = screenshotFolder("arena");
   try {
-    await page.goto(`${server.url}/s/short/?backend=webgl2`);
-    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(page);
-    let trials = 0;
-    while (here.view !== "end") {
-      if (here.view === "receipt") {
-        here = await leave(page, here, 60_000);
-        continue;
-      }
-      if (here.view === "trial") {
-        trials += 1;
-        await phase(page, "ready", 120_000);
-        await go(page, "keyboard");
-        await phase(page, "answering", 120_000);
-        await page.waitForTimeout(400);
-        if (trials === 1) await page.screenshot({ path: join(shots, "trial.png") });
-      }
-      if (here.view === "questions" || here.view === "trial") await answer(page, "keyboard", here.step);
+    const trials = await through(page, `${server.url}/s/short/?backend=webgl2`, async (here, trials) => {
       await go(page, "keyboard");
-      here = await leave(page, here, 60_000);
-    }
+      await phase(page, "answering", 120_000);
+      await page.waitForTimeout(400);
+      if (trials === 1) await page.screenshot({ path: join(shots, "trial.png") });
+      await answer(page, "keyboard", here.step);
+    }, { questions: true });
     assert.ok(trials >= 1, "there are pairs");
     assert.deepEqual(browser.errors, [], "the console is clean");
     const out = join(folder, "answers.csv");

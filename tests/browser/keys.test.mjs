@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place, until } from "./lib/participant.mjs";
+import { go, leave, phase, place, toFirstTrial, until } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -117,14 +117,7 @@ test("keys: a line moved while the clip plays, 60 values a second", { skip: unab
   const shots = screenshotFolder("keys");
   const { page } = browser;
   try {
-    await page.goto(`${server.url}/s/followed/?backend=webgl2`);
-    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(page);
-    while (here.view !== "trial") {
-      await go(page, "keyboard");
-      here = await leave(page, here, 60_000);
-    }
-    await phase(page, "ready", 120_000);
+    let here = await toFirstTrial(page, `${server.url}/s/followed/?backend=webgl2`);
     assert.deepEqual(await violations(page), [], "axe");
     await go(page, "keyboard");
     await phase(page, "playing");

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { answer, go, phase, through } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text } from "./lib/small_study.mjs";
 
@@ -40,48 +40,34 @@ test("pair blocks: each two methods in turn, left and right, in the export", { s
   const shots = screenshotFolder("pair-blocks");
   const { page } = browser;
   try {
-    await page.goto(`${server.url}/s/duels/?backend=webgl2`);
-    await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-    let here = await place(page);
-    let trials = 0;
-    while (here.view !== "end") {
-      if (here.view === "receipt") {
-        here = await leave(page, here, 60_000);
-        continue;
-      }
-      if (here.view === "trial") {
-        trials += 1;
-        await phase(page, "ready", 120_000);
-        assert.deepEqual(await waiting(page), [false, false], "both stand there before the play");
-        // Every state of the play that the page comes through.
-        await page.evaluate(() => {
-          window.turns = [];
-          const note = () => {
-            const now = [...document.querySelectorAll(".stage-frame.pair canvas")].map((canvas) => canvas.hasAttribute("data-waiting"));
-            const last = window.turns.at(-1);
-            if (!last || String(last) !== String(now)) window.turns.push(now);
-          };
-          const seen = new MutationObserver(note);
-          for (const canvas of document.querySelectorAll(".stage-frame.pair canvas")) {
-            seen.observe(canvas, { attributes: true, attributeFilter: ["data-waiting"] });
-          }
-        });
-        await go(page, "keyboard");
-        await phase(page, "playing");
-        if (trials === 1) {
-          await page.waitForTimeout(1500);
-          await page.screenshot({ path: join(shots, "first.png") });
+    const trials = await through(page, `${server.url}/s/duels/?backend=webgl2`, async (here, trials) => {
+      assert.deepEqual(await waiting(page), [false, false], "both stand there before the play");
+      // Every state of the play that the page comes through.
+      await page.evaluate(() => {
+        window.turns = [];
+        const note = () => {
+          const now = [...document.querySelectorAll(".stage-frame.pair canvas")].map((canvas) => canvas.hasAttribute("data-waiting"));
+          const last = window.turns.at(-1);
+          if (!last || String(last) !== String(now)) window.turns.push(now);
+        };
+        const seen = new MutationObserver(note);
+        for (const canvas of document.querySelectorAll(".stage-frame.pair canvas")) {
+          seen.observe(canvas, { attributes: true, attributeFilter: ["data-waiting"] });
         }
-        await phase(page, "answering", 120_000);
-        assert.deepEqual(await waiting(page), [false, false], "both stand there after it");
-        const turns = (await page.evaluate(() => window.turns)).map(String);
-        assert.ok(turns.indexOf("false,true") >= 0, `the right one waits: ${turns}`);
-        assert.ok(turns.indexOf("true,false") > turns.indexOf("false,true"), `then the left one: ${turns}`);
-        await answer(page, "keyboard", here.step);
-      }
+      });
       await go(page, "keyboard");
-      here = await leave(page, here, 60_000);
-    }
+      await phase(page, "playing");
+      if (trials === 1) {
+        await page.waitForTimeout(1500);
+        await page.screenshot({ path: join(shots, "first.png") });
+      }
+      await phase(page, "answering", 120_000);
+      assert.deepEqual(await waiting(page), [false, false], "both stand there after it");
+      const turns = (await page.evaluate(() => window.turns)).map(String);
+      assert.ok(turns.indexOf("false,true") >= 0, `the right one waits: ${turns}`);
+      assert.ok(turns.indexOf("true,false") > turns.indexOf("false,true"), `then the left one: ${turns}`);
+      await answer(page, "keyboard", here.step);
+    });
     assert.equal(trials, 4, "one for practice");
     assert.deepEqual(browser.errors, [], "the console is clean");
 

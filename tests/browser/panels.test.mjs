@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place, storedEvents, tabTo, until } from "./lib/participant.mjs";
+import { go, leave, phase, storedEvents, tabTo, toFirstTrial, until } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text } from "./lib/small_study.mjs";
 
@@ -37,14 +37,7 @@ for (const show of ["inStep", "inTurn"]) {
     const shots = screenshotFolder("panels");
     const { page } = browser;
     try {
-      await page.goto(`${server.url}/s/quality/?backend=webgl2`);
-      await page.waitForSelector("main[data-view]", { timeout: 30_000 });
-      let here = await place(page);
-      while (here.view !== "trial") {
-        await go(page, "keyboard");
-        here = await leave(page, here, 60_000);
-      }
-      await phase(page, "ready", 120_000);
+      let here = await toFirstTrial(page, `${server.url}/s/quality/?backend=webgl2`);
       const captions = await page.locator(".stage-frame.panel figcaption").allTextContents();
       assert.deepEqual(captions, [show === "inTurn" ? "Référence" : "Reference", "A", "B", "C"]);
       assert.equal(await page.locator("input[type=range]").count(), 0, "nothing can be rated before the play");

@@ -14,6 +14,7 @@ use mimique_mocap::{
     CaptureFacts, ReadError, ReadOptions, WeightOptions, activity_formats, formats,
     read_activity_bytes, recognise, recognise_activity,
 };
+use mimique_server::ZIP_START;
 use mimique_stimulus::{AvatarSkin, BankDiagnosis, MarkerMap};
 use serde_json::{Value, json};
 
@@ -101,7 +102,7 @@ fn facts(opened: &Opened<'_>, rate_hz: Option<f64>) -> anyhow::Result<Value> {
             _ => take_facts(&bytes),
         };
     }
-    let archives: [&[u8]; 3] = [b"PK\x03\x04", b"\x1f\x8b", b"\xfd7zXZ\0"];
+    let archives: [&[u8]; 3] = [ZIP_START, b"\x1f\x8b", b"\xfd7zXZ\0"];
     let is_tar = head.get(257..262) == Some(b"ustar");
     // A zip archive may be NumPy's.
     let is_archive = (is_tar || archives.iter().any(|opening| head.starts_with(opening)))

@@ -1,7 +1,5 @@
 //! A study on disk: a study file, or a ZIP archive of its folder, which is unpacked.
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
@@ -70,12 +68,9 @@ pub fn in_data_folder(given: &Path, data_folder: &Path) -> anyhow::Result<PathBu
 }
 
 fn is_archive(given: &Path) -> anyhow::Result<bool> {
-    let mut start = [0; 4];
-    let read = File::open(given).and_then(|mut file| file.read(&mut start));
-    let read = read
+    mimique_server::is_archive(given)
         .map_err(|error| anyhow!("cannot be read ({error}); check the path"))
-        .with_context(|| given.display().to_string())?;
-    Ok(&start[..read] == b"PK\x03\x04")
+        .with_context(|| given.display().to_string())
 }
 
 fn unpack(archive: &Path, folder: &Path) -> anyhow::Result<PathBuf> {

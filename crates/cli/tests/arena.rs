@@ -6,7 +6,7 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use common::{ok, refused, text};
+use common::{copied, ok, refused, text};
 use serde_json::Value;
 
 /// An arena with four methods, and its study.
@@ -287,19 +287,6 @@ fn halved(from: &Path, to: &Path) -> String {
     }
     std::fs::write(to, out).unwrap();
     text(to)
-}
-
-fn copied(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let there = to.join(entry.file_name());
-        if entry.file_type().unwrap().is_dir() {
-            copied(&entry.path(), &there);
-        } else {
-            std::fs::copy(entry.path(), there).unwrap();
-        }
-    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod common;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use common::{ok, refused, sample, text};
+use common::{files, ok, refused, sample, text};
 use mimique_test_support::repository;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
@@ -45,24 +45,6 @@ fn args(study: &Path, export: &Path, out: &Path, more: &[&str]) -> Vec<String> {
 
 fn demo() -> PathBuf {
     repository().join("study-config/demo.json")
-}
-
-/// Every file below a folder: path with `/`, and bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(inside) = folders.pop() {
-        for entry in std::fs::read_dir(inside).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().to_str().unwrap().replace('\\', "/");
-                found.insert(name, std::fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
 }
 
 fn json(files: &BTreeMap<String, Vec<u8>>, path: &str) -> Value {

@@ -6,7 +6,7 @@
 mod common;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output};
 use std::sync::{Arc, Mutex};
 
@@ -16,7 +16,7 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
-use common::{ok, text};
+use common::{files, ok, text};
 use md5::{Digest as _, Md5};
 use mimique_test_support::repository;
 use serde_json::{Value, json};
@@ -415,7 +415,7 @@ fn dataverse_gets_each_file_in_its_folder_through_faults_and_once() {
     let held = mock.lock().unwrap();
     assert_eq!(held.made, 1);
     assert!(held.published);
-    let local = all_files(&bench.out());
+    let local = files(&bench.out());
     assert_eq!(held.files, local, "every file, in its folder");
     let fields =
         held.metadata["datasetVersion"]["metadataBlocks"]["citation"]["fields"].as_array().unwrap();
@@ -424,21 +424,4 @@ fn dataverse_gets_each_file_in_its_folder_through_faults_and_once() {
         assert!(names.contains(&name), "Dataverse asks for {name}: {names:?}");
     }
     assert_eq!(held.metadata["datasetVersion"]["license"]["name"], "CC BY 4.0");
-}
-
-fn all_files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(inside) = folders.pop() {
-        for entry in std::fs::read_dir(inside).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
-                found.insert(name, std::fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
 }

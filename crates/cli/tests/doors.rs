@@ -4,7 +4,7 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::{ok, refused, sample, text};
+use common::{ok, refused, sample, solved_sample, text};
 use mimique_mocap::{
     Format, WeightOptions, WeightsTable, formats, npy_header, read_vertex_array, read_weights_file,
 };
@@ -168,21 +168,7 @@ fn every_fortieth_frame(file: &Path) {
 fn vertices_become_an_avatar_that_plays_them() {
     let folder = sample();
     let at = |name: &str| text(&folder.path().join(name));
-    ok(&[
-        "solve",
-        "--avatar",
-        &at("head.glb"),
-        "--mocap",
-        &at("take.c3d"),
-        "--markers",
-        &at("markers.json"),
-        "--method",
-        "box",
-        "--out",
-        &at("w.csv"),
-        "--vertices",
-        &at("v.npy"),
-    ]);
+    solved_sample(folder.path());
     every_fortieth_frame(&folder.path().join("v.npy"));
     let vertices = ["vertices", &at("v.npy"), "--template", &at("head.glb"), "--rate", "60"];
     let files = ["--out", &at("bank.glb"), "--weights", &at("bank.csv")];
@@ -217,21 +203,7 @@ fn vertices_are_solved_onto_another_bank_through_corresponding_vertices() {
     let (one, two) = (sample(), tempfile::tempdir().unwrap());
     let at = |name: &str| text(&one.path().join(name));
     ok(&["sample", "--avatar", "2", "--out", &text(two.path())]);
-    ok(&[
-        "solve",
-        "--avatar",
-        &at("head.glb"),
-        "--mocap",
-        &at("take.c3d"),
-        "--markers",
-        &at("markers.json"),
-        "--method",
-        "box",
-        "--out",
-        &at("w.csv"),
-        "--vertices",
-        &at("v.npy"),
-    ]);
+    solved_sample(one.path());
     // Both heads have one topology, which a pair of scans or FLAME and a bank would need a fit for: the
     // markers' vertices, and those around them.
     let map: Value =

@@ -4,8 +4,11 @@
 //! `TRYCMD=overwrite cargo nextest run --release -p mimique --test guide` writes what is printed into the
 //! pages; look at the difference before you keep it. `[..]` stands for what differs from run to run.
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
+use common::copied;
 use mimique_test_support::real_file;
 
 /// What a page's commands may name, from the repository's root.
@@ -78,20 +81,6 @@ fn gets_public_files(name: &str, folder: &Path) -> bool {
             true
         })
     })
-}
-
-/// A folder with everything in it.
-fn copied(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let there = to.join(entry.file_name());
-        if entry.file_type().unwrap().is_dir() {
-            copied(&entry.path(), &there);
-        } else {
-            std::fs::copy(entry.path(), there).unwrap();
-        }
-    }
 }
 
 /// Whether a quoted text is the path of a file from the repository's root.

@@ -71,4 +71,4 @@ pub use state::network::{Network, NetworkError};
 pub use state::settings::Settings;
 pub use state::start_error::AppError;
 pub use studio::{StudioFile, StudioFiles, StudioRole};
-pub use uploads::unpack_study;
+pub use uploads::{ZIP_START, is_archive, unpack_study};

@@ -130,9 +130,23 @@ export async function storedEvents(page, server, study) {
   return events.map(({ body }) => body);
 }
 
-/** Goes through a study from its first page to its last by the keyboard; `trial(here, number)` takes each trial, from 1,
-    from where it can be played to where its answers can be sent. Resolves with how many there were. */
-export async function through(page, address, trial) {
+/** Goes to a study and on to its first trial, by the keyboard; resolves with the trial's place once it can be played. */
+export async function toFirstTrial(page, address) {
+  await page.goto(address);
+  await page.waitForSelector("main[data-view]", { timeout: 30_000 });
+  let here = await place(page);
+  while (here.view !== "trial") {
+    await go(page, "keyboard");
+    here = await leave(page, here, 60_000);
+  }
+  await phase(page, "ready", 120_000);
+  return here;
+}
+
+/** Goes through a study from its first page to its last; `trial(here, number)` takes each trial, from 1, from where it can
+    be played to where its answers can be sent. `hands` are those of `answer`; `questions` answers the pages between
+    trials, too. Resolves with how many trials there were. */
+export async function through(page, address, trial, { hands = "keyboard", questions = false } = {}) {
   await page.goto(address);
   await page.waitForSelector("main[data-view]", { timeout: 30_000 });
   let here = await place(page);
@@ -143,7 +157,8 @@ export async function through(page, address, trial) {
       await phase(page, "ready", 120_000);
       await trial(here, trials);
     }
-    if (here.view !== "receipt") await go(page, "keyboard");
+    if (questions && here.view === "questions") await answer(page, hands, here.step);
+    if (here.view !== "receipt") await go(page, hands);
     here = await leave(page, here, 60_000);
   }
   return trials;

@@ -218,7 +218,7 @@ fn write(folder: &mut impl Files, site: &Exported<'_>, jatos: bool) -> anyhow::R
     let triggers = study.triggers.map(|triggers| triggers.origin()).unwrap_or_default();
     let values = [
         ("assets", prefix.as_str()),
-        ("boot", boot),
+        ("boot", &format!("{prefix}/{boot}")),
         ("inline", inline),
         ("lang", language),
         ("title", study.study_metadata.title.in_language(language)),

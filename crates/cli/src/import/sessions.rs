@@ -6,6 +6,7 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use mimique_server::ZIP_START;
 use mimique_session::SessionFile;
 use zip::ZipArchive;
 
@@ -87,16 +88,13 @@ impl Sessions {
     }
 }
 
-/// First bytes of a ZIP archive.
-const ZIP: &[u8] = b"PK\x03\x04";
-
 /// The texts of a file, each with its place: its own, or those of the archive that it is.
 fn texts(path: &Path) -> anyhow::Result<Vec<(String, String)>> {
     let at = path.display().to_string();
     let bytes = std::fs::read(path)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
         .with_context(|| at.clone())?;
-    if bytes.starts_with(ZIP) {
+    if bytes.starts_with(ZIP_START) {
         return archived(&bytes).with_context(|| at);
     }
     let text = String::from_utf8(bytes)

@@ -1,6 +1,7 @@
 //! The binary, run to its end.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -51,4 +52,56 @@ pub fn exertion_args(words: &[&str], paths: &[(&str, &Path)]) -> Vec<String> {
         all.push(text(path));
     }
     all
+}
+
+/// A folder with everything in it, elsewhere.
+pub fn copied(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let there = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copied(&entry.path(), &there);
+        } else {
+            std::fs::copy(entry.path(), there).unwrap();
+        }
+    }
+}
+
+/// Every file below a folder: path with `/`, and bytes.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(inside) = folders.pop() {
+        for entry in std::fs::read_dir(inside).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_str().unwrap().replace('\\', "/");
+                found.insert(name, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// The sample's take solved onto its head by the method `box`: weights in `w.csv`, vertices in `v.npy`.
+pub fn solved_sample(folder: &Path) {
+    let at = |name: &str| text(&folder.join(name));
+    ok(&[
+        "solve",
+        "--avatar",
+        &at("head.glb"),
+        "--mocap",
+        &at("take.c3d"),
+        "--markers",
+        &at("markers.json"),
+        "--method",
+        "box",
+        "--out",
+        &at("w.csv"),
+        "--vertices",
+        &at("v.npy"),
+    ]);
 }

@@ -21,12 +21,23 @@ const DEEPEST: usize = 12;
 /// Bytes of a name.
 const LONGEST_NAME: usize = 400;
 
+/// The first bytes of a ZIP archive.
+pub const ZIP_START: &[u8; 4] = b"PK\x03\x04";
+
+/// Whether a file is a ZIP archive, by its first bytes.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn is_archive(path: &Path) -> io::Result<bool> {
+    let mut start = [0; ZIP_START.len()];
+    let read = File::open(path)?.read(&mut start)?;
+    Ok(&start[..read] == ZIP_START)
+}
+
 /// Unpacks an upload (a ZIP archive, or a study file alone) into an empty folder; gives the study file.
 pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, Error> {
     fs::create_dir_all(folder)?;
-    let mut start = [0; 4];
-    let read = File::open(upload)?.read(&mut start)?;
-    if &start[..read] != b"PK\x03\x04" {
+    if !is_archive(upload)? {
         return single_file(upload, folder);
     }
     let mut archive = ZipArchive::new(File::open(upload)?)

@@ -21,6 +21,7 @@ use tokio::io::AsyncWriteExt;
 use tokio::sync::Semaphore;
 
 use archive::unpack;
+pub use archive::{ZIP_START, is_archive};
 use checked::{Checked, check_upload};
 
 use crate::accounts::audit::audit;

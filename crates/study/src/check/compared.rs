@@ -1,21 +1,22 @@
 //! What blocks of pairs and panels have in common: what they compare, within what, and which clips they can show.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::Subject;
 use super::issue::{Issues, below};
 use super::problem::Problem;
+use super::sequence::{all_factors, selection};
 use super::values::Nearest;
 use crate::columns::ColumnKind;
-use crate::study_file::NoCells;
+use crate::study_file::{Compared, NoCells};
 
-/// What is compared, and what its clips are alike in.
-pub(super) fn factors(
-    (compare, levels, within): (&str, &[String], &[String]),
-    factors: &BTreeMap<String, BTreeSet<String>>,
+/// Which clips are compared, by what, and what they are alike in.
+pub(super) fn clips(
+    subject: &Subject<'_>,
+    Compared { compare, levels, within, clips }: Compared<'_>,
     pointer: &str,
     issues: &mut Issues,
 ) {
+    let factors = all_factors(subject);
+    selection(subject, clips, &factors, pointer, issues);
     let unknown = |name: &str| Problem::unknown("factor", name, factors.keys());
     let list = below(pointer, "levels");
     match factors.get(compare) {

@@ -2,7 +2,7 @@
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
-use super::sequence::{all_factors, read_block, selection};
+use super::sequence::read_block;
 use super::{Subject, compared};
 use crate::columns::PANEL_COLUMNS;
 use crate::question::QuestionKind;
@@ -16,10 +16,7 @@ pub(super) fn examine(
 ) {
     let Some(block) = read_block(block.read(), pointer, issues) else { return };
     let before = issues.count();
-    let factors = all_factors(subject);
-    selection(subject, &block.clips, &factors, pointer, issues);
-    let named = (block.compare.as_str(), block.levels.as_slice(), block.within.as_slice());
-    compared::factors(named, &factors, pointer, issues);
+    compared::clips(subject, block.compares(), pointer, issues);
     scale(subject, &block, pointer, issues);
     compared::columns(subject, &PANEL_COLUMNS, pointer, issues);
     if issues.count() == before {

@@ -5,7 +5,7 @@ use super::{Clip, ClipSelection};
 /// The clips that a block compares. Its items are the levels of the factor `compare`; clips that are alike in what
 /// `within` names make a cell, which has a clip of every level.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Compared<'b> {
+pub(crate) struct Compared<'b> {
     /// The factor.
     pub compare: &'b str,
     /// Its levels; empty: all that clips have.
@@ -74,7 +74,7 @@ impl Compared<'_> {
     ///
     /// # Errors
     /// [`NoCells`].
-    pub fn cells<'c>(
+    pub(super) fn cells<'c>(
         &self,
         clips: &'c [Clip],
         levels: &[String],

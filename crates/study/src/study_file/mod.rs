@@ -45,6 +45,7 @@ pub use adaptive::{
 };
 pub use between::UnknownCondition;
 pub use clips::{BuiltinExpression, Clip, FactorValue, Factors};
+pub(crate) use compared::Compared;
 pub use compared::NoCells;
 pub use conduct::{
     AfterTraining, AttentionEnd, AttentionRule, BackendRule, Calibration, Criterion, DeviceKind,

@@ -115,7 +115,7 @@ impl PairsComponent {
         [&self.question].into_iter().chain(&self.reasons).cloned().collect()
     }
 
-    fn compares(&self) -> Compared<'_> {
+    pub(crate) fn compares(&self) -> Compared<'_> {
         let Self { compare, levels, within, clips, .. } = self;
         Compared { compare, levels, within, clips }
     }

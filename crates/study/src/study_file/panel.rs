@@ -92,7 +92,7 @@ impl PanelComponent {
     /// Most conditions of a panel, as ITU-R BS.1534-3 advises for its signals.
     pub const MOST_CONDITIONS: usize = 12;
 
-    fn compares(&self) -> Compared<'_> {
+    pub(crate) fn compares(&self) -> Compared<'_> {
         let Self { compare, levels, within, clips, .. } = self;
         Compared { compare, levels, within, clips }
     }
