@@ -7,7 +7,7 @@
 //! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
 //! | `adaptive` | `web/adaptive` | `web-solver` | the levels of adaptive blocks; studies with one alone load it |
 //! | `studio` | `web/studio` | `web-solver` | the studio's worker |
-//! | `report` | `web/report` | `web-solver` | the report of a study, for the pages of a capsule |
+//! | `report` | `web/report` | `web-report` | the report of a study, for the pages of a capsule |
 //! | `solver` | `web/solver` | `web-solver` | the solver's worker |
 //! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
 //! | `exertion_bits` | an example of `web/solver` | `web-solver` | exertion's numbers, for a test; not a part of the pages |
@@ -102,7 +102,7 @@ const MODULES: [Module; 10] = [
         library: "mimique_web_report",
         example: false,
         features: None,
-        profile: "web-solver",
+        profile: "web-report",
         opt_level: "-O3",
     },
     Module {
@@ -215,8 +215,8 @@ fn build(wanted: impl Fn(&Module) -> bool, optimise: bool) -> Result<()> {
     let tools = if optimise { tools()? } else { None };
     let wasm_opt = tools.as_ref().map(|folder| folder.join("binaryen/bin/wasm-opt"));
     let wanted: Vec<&Module> = MODULES.iter().filter(|module| wanted(module)).collect();
-    // Linking with link-time optimisation keeps one core: the modules of the two profiles, which have folders and
-    // locks of their own, are built beside each other.
+    // Linking with link-time optimisation keeps one core: the modules of the profiles, which have folders and locks
+    // of their own, are built beside each other; the report, which is built on all cores, follows what participants load.
     let of_profile = |profile: &str| -> Result<()> {
         let mut own = wanted.iter().filter(|module| module.profile == profile);
         own.try_for_each(|module| module.build(wasm_opt.as_deref()))
@@ -224,6 +224,7 @@ fn build(wanted: impl Fn(&Module) -> bool, optimise: bool) -> Result<()> {
     std::thread::scope(|scope| -> Result<()> {
         let speed = scope.spawn(|| of_profile("web-solver"));
         of_profile("web")?;
+        of_profile("web-report")?;
         speed.join().map_err(|_| anyhow!("the build of the solver's modules has stopped"))?
     })?;
     gather(tools.map(|folder| folder.join("esbuild/bin/esbuild")).as_deref())
