@@ -8,10 +8,13 @@ use std::path::Path;
 use std::process::Command;
 
 use mimique_stats::{
-    Blocks, Contingency, Factor, Numbers, SumsOfSquares, WilcoxonOptions, WilcoxonVariant,
-    chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare, spearman, wilcoxon,
+    Blocks, Contingency, CoupledPlay, Couplings, Courses, Factor, LagWindow,
+    LaggedCorrelationOptions, Numbers, SumsOfSquares, Surrogates, WilcoxonOptions, WilcoxonVariant,
+    chi_square, friedman, kruskal_wallis, lagged_correlation, mann_whitney, scheirer_ray_hare,
+    spearman, wilcoxon,
 };
 use mimique_test_support::Random;
+use serde_json::json;
 
 const TESTS: [&str; 7] =
     ["kruskal", "wilcoxon", "mannwhitney", "spearman", "chisquare", "friedman", "srh"];
@@ -209,4 +212,67 @@ fn scipy_agrees_on_random_data_sets() {
     let mut command = Command::new(python);
     command.arg(script);
     compare("scipy", command, wanted());
+}
+
+/// People who follow clips of two shapes after half a second, with noise of their own and stretches that were not measured.
+fn couplings() -> Couplings {
+    const INSTANTS: usize = 120;
+    let mut random = Random::new(20_261_127);
+    let mut course = || -> Vec<f64> {
+        let mut state = 0.0;
+        let mut step = || {
+            state = 0.9 * state + 0.4 * random.normal();
+            state
+        };
+        (0..INSTANTS).map(|_| step()).collect()
+    };
+    let clips: Vec<Courses> = (0..3).map(|_| vec![course(), course()]).collect();
+    let mut plays = Vec::new();
+    for person in 0..5 {
+        for clip in 0..clips.len() {
+            let mut follow = |shown: &Vec<f64>| -> Vec<f64> {
+                let own = course();
+                let seen = |at: usize| at.checked_sub(15).map_or(0.0, |before| shown[before]);
+                (0..INSTANTS).map(|at| 0.5 * seen(at) + own[at]).collect()
+            };
+            let mut track: Courses = clips[clip].iter().map(&mut follow).collect();
+            let from = 11 * (person + 3 * clip) % (INSTANTS - 25);
+            track.iter_mut().for_each(|course| course[from..from + 25].fill(f64::NAN));
+            plays.push(CoupledPlay { person, clip, track });
+        }
+    }
+    Couplings { people: (0..5).map(|person| format!("p{person}")).collect(), clips, plays }
+}
+
+#[test]
+fn scipy_agrees_on_lagged_correlations_with_gaps() {
+    let name = "scipy_agrees_on_lagged_correlations_with_gaps";
+    let Some(python) = mimique_test_support::python(name) else { return };
+    let given = couplings();
+    let window = LagWindow::of_seconds(30.0, [-0.5, 1.5], 2.0);
+    let plays: Vec<_> = (given.plays.iter())
+        .map(|play| json!({ "person": play.person, "clip": play.clip, "track": play.track }))
+        .collect();
+    let courses = json!({
+        "first": window.first, "last": window.last, "least": window.least,
+        "clips": given.clips, "plays": plays,
+    });
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lagged.json");
+    std::fs::write(&path, courses.to_string()).unwrap();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/agreement/lagged.py");
+    let output = Command::new(python).arg(script).arg(&path).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let theirs: Vec<Vec<f64>> = (String::from_utf8_lossy(&output.stdout).lines())
+        .map(|line| line.split_whitespace().map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let kind = Surrogates::OtherClips;
+    let options = LaggedCorrelationOptions { window, surrogates: 19, kind, seed: 1 };
+    let own = lagged_correlation(&given, options).unwrap().unwrap();
+    assert_eq!((own.lags_s.len(), own.lag_s), (theirs.len(), 0.5));
+    let intervals = own.interval_95.unwrap();
+    for ((r, [low, high]), their) in own.r.iter().zip(&intervals).zip(&theirs) {
+        for (value, their) in [r, low, high].into_iter().zip(their) {
+            assert!((value - their).abs() < 1e-12, "{value} and {their}");
+        }
+    }
 }
