@@ -35,7 +35,11 @@ fn main() -> io::Result<()> {
     let out = variable("OUT_DIR");
     let mut table = String::from("&[\n");
     for (name, path) in folder::files(&dist)? {
-        let bytes = fs::read(&path)?;
+        // A page that is being replaced comes with the next build, which its change starts.
+        let bytes = match fs::read(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            read => read?,
+        };
         let brotli = packed(&out, &bytes, "br", compression::brotli)?;
         let gzip = packed(&out, &bytes, "gz", gzip)?;
         let _ = writeln!(

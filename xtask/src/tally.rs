@@ -49,6 +49,16 @@ impl Tally {
         }
     }
 
+    /// Counts what somebody else has counted.
+    pub fn add(&mut self, other: Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.skipped += other.skipped;
+        self.failures.extend(other.failures);
+        self.skips.extend(other.skips);
+        self.took.extend(other.took);
+    }
+
     fn took(&mut self, name: &str, begun: Instant) {
         self.took.push((name.to_owned(), begun.elapsed()));
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 
 use crate::install::{self, Found, Package};
 use crate::process::{cargo, locked, output, root, say};
@@ -28,10 +28,15 @@ pub fn run(args: &Args) -> Result<()> {
     say(&format!("real data are looked for in {}", data().display()));
     let python = needed()?;
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
-    // The server embeds the pages, so they come before everything that compiles it.
-    tally.done("pages", || web::all(true));
+    // The server embeds the pages, so they come before everything that runs it. Their linking keeps one core: the lints,
+    // which run nothing, are beside it.
+    let linted = std::thread::scope(|scope| {
+        let linting = scope.spawn(lints);
+        tally.done("pages", || web::all(true));
+        linting.join()
+    });
+    tally.add(linted.map_err(|_| anyhow!("the lints have stopped"))?);
     tally.done("size of the pages", budget::check);
-    lints(&mut tally);
     dependencies(&mut tally);
     native(&mut tally, python.as_deref())?;
     documentation(&mut tally);
@@ -73,29 +78,41 @@ fn needed() -> Result<Option<PathBuf>> {
 }
 
 /// Clippy, natively and for the modules of the pages.
-fn lints(tally: &mut Tally) {
+fn lints() -> Tally {
+    let mut tally = Tally::default();
     let mut lint = cargo();
     lint.arg("clippy").args(locked()).args(["--release", "--workspace", "--all-targets"]);
     exclude_web(&mut lint);
-    tally.check("clippy, native", lint.args(["--", "-D", "warnings"]));
-    for (name, features) in [
-        ("mimique-app", None),
-        ("mimique-web-solver", None),
-        ("mimique-web-adaptive", None),
-        ("mimique-web-report", None),
-        ("mimique-web-studio", None),
-        ("mimique-web-stage", Some("webgpu")),
-        ("mimique-web-stage", Some("webgl")),
-    ] {
-        let mut lint = cargo();
-        lint.arg("clippy").args(locked()).args(["--release", "--target", "wasm32-unknown-unknown"]);
-        lint.args(["--package", name]);
-        if let Some(features) = features {
-            lint.args(["--no-default-features", "--features", features]);
-        }
-        let title = format!("clippy, wasm32, {name} {}", features.unwrap_or_default());
-        tally.check(title.trim_end(), lint.args(["--", "-D", "warnings"]));
+    tally.check("clippy, native", lint.args(DENY));
+    let modules = [
+        "mimique-app",
+        "mimique-web-solver",
+        "mimique-web-adaptive",
+        "mimique-web-report",
+        "mimique-web-studio",
+    ];
+    tally.check("clippy, wasm32", lint_wasm().args(packages(&modules)).args(DENY));
+    for canvas in ["webgpu", "webgl"] {
+        let mut lint = lint_wasm();
+        lint.args(packages(&["mimique-web-stage"]));
+        lint.args(["--no-default-features", "--features", canvas]);
+        tally.check(&format!("clippy, wasm32, the canvas of {canvas}"), lint.args(DENY));
     }
+    tally
+}
+
+/// A warning fails.
+const DENY: [&str; 3] = ["--", "-D", "warnings"];
+
+/// Clippy for browsers, of packages to be named.
+fn lint_wasm() -> Command {
+    let mut lint = cargo();
+    lint.arg("clippy").args(locked()).args(["--release", "--target", "wasm32-unknown-unknown"]);
+    lint
+}
+
+fn packages(names: &[&'static str]) -> impl Iterator<Item = &'static str> {
+    names.iter().flat_map(|name| ["--package", name])
 }
 
 /// Licences, sources and unwanted crates. Compiling cargo-deny takes longer than all of the tests, so that it
