@@ -8,6 +8,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { taken } from "./lib/guide_picture.mjs";
 import { answer, go, leave, place } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { small, stimuli, text } from "./lib/small_study.mjs";
@@ -16,7 +17,11 @@ const noBrowser = skip(!executable && "Chromium not found");
 
 /** A page with the study in a frame, that keeps what it is told. */
 async function survey(address) {
-  const page = () => `<!doctype html><html lang="en"><title>Survey</title><h1>Survey</h1>
+  const page = () => `<!doctype html><html lang="en"><title>Survey</title>
+    <style>body { font: 16px sans-serif; max-width: 860px; margin: 16px auto; background: #eef1f6 } label { margin-right: 24px }</style>
+    <h1>Survey of a laboratory</h1>
+    <p><strong>7.</strong> Have you seen animated faces before? <label><input type="radio"> Yes</label> <label><input type="radio"> No</label></p>
+    <p><strong>8.</strong> Now watch the face, and say what you think of it.</p>
     <iframe id="faces" title="Faces" src="${address}" style="width: 100%; height: 300px; border: 0" allow="autoplay; fullscreen"></iframe>
     <script>
       window.heard = [];
@@ -64,6 +69,7 @@ test("embedding: a study in a frame of a page that is named, and of no other", {
         const { height } = await page.locator("iframe").boundingBox();
         assert.ok(height >= 760, `${height}`);
         await frame.waitForFunction(() => document.querySelector("main").dataset.phase === "ready", null, { timeout: 90_000 });
+        await taken(page, "embedding-survey.jpg");
         await go(keyboardless, "mouse");
         await frame.waitForSelector("fieldset[data-question]", { timeout: 90_000 });
       }

@@ -10,6 +10,7 @@ import { test } from "node:test";
 import { strToU8, zipSync } from "fflate";
 import { executable, open, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
+import { taken } from "./lib/guide_picture.mjs";
 import { imported, jatos } from "./lib/jatos_mock.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique } from "./lib/server.mjs";
@@ -68,6 +69,7 @@ test("jatos: a study is imported, answers go by its API as they come, what it ex
     await page.goto(`${host.begin("run-one", { PROLIFIC_PID: "a b", batchId: "1" })}`);
     await takePart(clicked.first);
     assert.equal(await page.locator("[data-code=completion]").textContent(), "DONE");
+    await taken(page, "jatos-end.jpg");
     assert.equal(await page.locator("a.button.primary").getAttribute("href"), "https://example.org/?cc=DONE&who=a%20b");
     const one = host.runs.get("run-one");
     await until(() => one.successful !== undefined, "the run is ended");
