@@ -94,9 +94,9 @@ test("replay: what somebody saw is drawn again, a late frame late", { skip: unab
     const stored = () => storedEvents(page, server, "seen");
     await until("the end is stored", async () => (await stored()).some(({ type }) => type === "finished"));
     const events = await stored();
-    const plays = events.filter(({ type, log }) => type === "trial_played" && !log.aborted).map(({ log }) => log);
+    const plays = events.filter(({ type, log }) => type === "trial_played" && !log.aborted);
     assert.equal(plays.length, 2);
-    const { frames } = plays[0];
+    const { frames } = plays[0].log;
     const gap = (at) => frames[at][0] - frames[at - 1][0];
     const late = frames.map((_, at) => at).filter((at) => frames[at][2]).reduce((one, other) => (gap(one) >= gap(other) ? one : other));
     assert.ok(gap(late) > 0.6 * LATE_MS, `a frame came late: ${gap(late)} ms`);
@@ -131,6 +131,13 @@ test("replay: what somebody saw is drawn again, a late frame late", { skip: unab
           assert.match(said, expected, step);
           seen.add(name);
         }
+      }
+      // When it was answered: of a trial after its first frame, else after the page was shown.
+      const answered = events.filter((event) => event.type === "answered" && event.step === step).at(-1);
+      if (answered) {
+        const [, after] = /(?:after the first frame|after): (\d+\.\d\d) s/.exec(said) ?? [];
+        const from = plays.find((play) => play.step === step)?.log.onset_ms ?? events.find((event) => event.type === "page_shown" && event.step === step).at_ms;
+        assert.ok(Math.abs(Number(after) - (answered.at_ms - from) / 1000) < 0.006, `${step}: ${after} s`);
       }
       if (step?.startsWith("faces")) {
         await page.waitForFunction(() => document.getElementById("same").textContent, undefined, { timeout: 120_000 });

@@ -13,6 +13,9 @@ export async function violations(page, part = "html") {
   // Not by a script element: the pages allow none but their own.
   await page.evaluate(axe);
   return page.evaluate(async ([part, tags]) => {
+    // A colour on its way to another is not what anybody reads.
+    const changing = document.getAnimations().filter((animation) => animation instanceof CSSTransition);
+    await Promise.allSettled(changing.map((animation) => animation.finished));
     const { violations } = await window.axe.run(part, { runOnly: { type: "tag", values: tags } });
     return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
   }, [part, standards]);
