@@ -3,6 +3,7 @@
 use mimique_analysis::Language;
 use mimique_analysis::components::{Block, DataTable, Document, ranking as ranking_figure};
 use mimique_stats::format_p;
+use mimique_study::text::{counted, counted_as};
 
 use super::rows::{ranking_rows, span};
 use super::{Band, Difference, FEWEST_PEOPLE, FEWEST_VOTES, NotRanked, Ranking};
@@ -33,16 +34,12 @@ pub fn ranking_document(
         subtitle: format!(
             "{} by {} in {}{days}; {}.",
             counted(ranking.votes, "vote"),
-            counted(ranking.people, "person").replace("persons", "people"),
-            counted(laboratories.len(), "laboratory").replace("laboratorys", "laboratories"),
+            counted_as(ranking.people, "person", "people"),
+            counted_as(laboratories.len(), "laboratory", "laboratories"),
             counted(submissions.len(), "method"),
         ),
         blocks,
     }
-}
-
-fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 /// A p value as reports write it.
@@ -202,7 +199,7 @@ fn no_ranking(why: &NotRanked, ranking: &Ranking) -> String {
         }
         NotRanked::TooFewPeople { people, wanted } => format!(
             "No ranking yet: {} voted, and intervals that know that a person's votes belong together need {wanted}.",
-            counted(*people, "person").replace("persons", "people")
+            counted_as(*people, "person", "people")
         ),
         NotRanked::NoErrors => {
             "No ranking: the errors of the worths cannot be estimated from these votes. More votes are needed.".to_owned()
@@ -270,7 +267,7 @@ fn people(ranking: &Ranking, laboratories: &[Laboratory]) -> Vec<Block> {
             own.interval.map_or_else(String::new, |ends_of| format!(" ({})", ends(ends_of)));
         sentences.push(format!(
             "Agreement on {} that two people or more chose between: Krippendorff's alpha {:.2}{interval}, 0 being chance.",
-            counted(own.pairs, "pair of clips").replace("pair of clipss", "pairs of clips"),
+            counted_as(own.pairs, "pair of clips", "pairs of clips"),
             own.alpha
         ));
     }
