@@ -539,6 +539,10 @@ fn straight_lining_is_left_out_by_the_study_s_rule() {
     assert_eq!(flow["people_left_out"]["straight-lining"], 1, "{flow}");
     assert!(flow["rules"].to_string().contains("straightLining.longestRun > 8"), "{flow}");
     assert!(report.files[0].text.contains("réponses toujours identiques\u{a0}: 1"));
+    assert!(
+        report.files[0].text.contains("dans plus de 8 essais de suite"),
+        "in the reader's words"
+    );
     let before = analyze(&table, &demo_study(), Language::French).unwrap();
     assert_eq!(report.people.0 + 1, before.people.0);
 }

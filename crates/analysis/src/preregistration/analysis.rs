@@ -13,6 +13,7 @@ use crate::hypothesis::is_two_way;
 use crate::language::Language;
 use crate::language::naming::Naming;
 use crate::simulate::{factor_levels, traits};
+use crate::trials::rule::Rule;
 
 pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {
     text.heading(2, "Analysis plan", "Plan d’analyse");
@@ -316,7 +317,6 @@ fn test_of_the_thesis(language: Language, hypothesis: &Hypothesis, setting: &Set
 }
 
 fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
-    let rules = from.study.exclusions.clone().unwrap_or_default();
     let mut words = vec![
         language
             .pick(
@@ -326,19 +326,6 @@ fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
             .to_owned(),
         language.pick("pilot sessions", "les sessions pilotes").to_owned(),
     ];
-    if rules.incomplete {
-        words.push(
-            language
-                .pick("people who do not finish", "les personnes qui ne terminent pas")
-                .to_owned(),
-        );
-    }
-    if let Some(most) = rules.failed_attention_checks {
-        words.push(language.pick(
-            format!("people who fail more than {most} attention checks"),
-            format!("les personnes qui échouent à plus de {most} contrôles d’attention"),
-        ));
-    }
     let device = from.study.device.as_ref();
     if let Some(share) = device.and_then(|device| device.minimum_frame_share) {
         let percent = language.fixed(100.0 * share, 0);
@@ -351,66 +338,6 @@ fn exclusions(from: &Preregistration<'_>, language: Language) -> Vec<String> {
             ),
         ));
     }
-    if let Some(share) = rules.late_frame_share {
-        let percent = language.fixed(100.0 * share, 0);
-        words.push(language.pick(
-            format!("trials with more than {percent} % late frames"),
-            format!("les essais ayant plus de {percent} % d’images en retard"),
-        ));
-    }
-    if let Some(longest) = rules.longest_frame_ms {
-        words.push(language.pick(
-            format!("trials with a frame longer than {longest} ms"),
-            format!("les essais ayant une image de plus de {} ms", language.number(longest)),
-        ));
-    }
-    if rules.sound_not_heard {
-        words.push(
-            language
-                .pick(
-                    "people who do not hear the tones of the sound check",
-                    "les personnes qui n’entendent pas les sons du contrôle d’écoute",
-                )
-                .to_owned(),
-        );
-    }
-    if let Some(most) = rules.sound_offset_ms {
-        words.push(language.pick(
-            format!(
-                "trials whose sound was not played, or was heard more than {most} ms beside its time"
-            ),
-            format!(
-                "les essais dont le son n’a pas été joué, ou entendu à plus de {} ms de son instant",
-                language.number(most)
-            ),
-        ));
-    }
-    if let Some(rule) = &rules.straight_lining {
-        let run = rule.longest_run;
-        let asked: Vec<String> = from
-            .study
-            .straight_lining_questions()
-            .iter()
-            .map(|question| format!("`{}`", question.id))
-            .collect();
-        let asked = asked.join(", ");
-        words.push(language.pick(
-            format!(
-                "people who gave the same answer in more than {run} trials in a row (counted for each of {asked})"
-            ),
-            format!(
-                "les personnes ayant donné la même réponse dans plus de {run} essais de suite (compté pour chaque question : {asked})"
-            ),
-        ));
-    }
-    if let Some(shortest) = rules.shortest_rt_ms {
-        words.push(language.pick(
-            format!("trials answered sooner than {shortest} ms after answers could be given"),
-            format!(
-                "les essais répondus moins de {} ms après l’ouverture des réponses",
-                language.number(shortest)
-            ),
-        ));
-    }
+    words.extend(Rule::of(from.study).iter().map(|rule| rule.words(language, "`")));
     words
 }

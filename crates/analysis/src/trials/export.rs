@@ -13,6 +13,7 @@ use crate::agreement::answers::on_pages;
 use crate::trials::combinations::Combinations;
 use crate::trials::error::ExportError;
 use crate::trials::reason::Reason;
+use crate::trials::rule::Rule;
 use crate::trials::screening::{Screening, screen};
 use crate::trials::sessions::{Sessions, about_people};
 use crate::trials::straight_lining::count_runs;
@@ -142,8 +143,8 @@ pub(crate) struct Flow {
     pub trials_used: usize,
     /// Rows of pilot sessions left out because there are live ones.
     pub pilot_people: usize,
-    /// Rules of the study file, in words.
-    pub rules: Vec<String>,
+    /// Rules of the study file.
+    pub rules: Vec<Rule>,
 }
 
 fn is_zero(count: &usize) -> bool {
@@ -316,7 +317,7 @@ pub(crate) fn why_left_out(
 pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&str]) -> Flow {
     let rules = study.exclusions.clone().unwrap_or_default();
     let live = stages.iter().any(|stage| *stage != "pilot");
-    let mut flow = Flow { people: people.len(), rules: rules_in_words(&rules), ..Flow::default() };
+    let mut flow = Flow { people: people.len(), rules: Rule::of(study), ..Flow::default() };
     for (person, stage) in people.iter_mut().zip(stages) {
         let standing = Standing::from_export_word(&person.status);
         person.excluded = if live && *stage == "pilot" {
@@ -356,33 +357,4 @@ pub(crate) fn exclude_people(study: &Study, people: &mut [Person], stages: &[&st
     }
     flow.people_used = people.iter().filter(|person| person.excluded.is_none()).count();
     flow
-}
-
-fn rules_in_words(rules: &Exclusions) -> Vec<String> {
-    let mut words = Vec::new();
-    if rules.incomplete {
-        words.push("incomplete".to_owned());
-    }
-    if let Some(limit) = rules.failed_attention_checks {
-        words.push(format!("failedAttentionChecks > {limit}"));
-    }
-    if rules.sound_not_heard {
-        words.push("soundNotHeard".to_owned());
-    }
-    if let Some(rule) = &rules.straight_lining {
-        words.push(format!("straightLining.longestRun > {}", rule.longest_run));
-    }
-    if let Some(limit) = rules.late_frame_share {
-        words.push(format!("lateFrameShare > {limit}"));
-    }
-    if let Some(limit) = rules.longest_frame_ms {
-        words.push(format!("longestFrameMs > {limit}"));
-    }
-    if let Some(limit) = rules.sound_offset_ms {
-        words.push(format!("soundOffsetMs > {limit}"));
-    }
-    if let Some(limit) = rules.shortest_rt_ms {
-        words.push(format!("rt_open < {limit} ms"));
-    }
-    words
 }

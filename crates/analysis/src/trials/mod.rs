@@ -7,6 +7,7 @@ pub(crate) mod error;
 pub(crate) mod export;
 pub(crate) mod measure;
 pub(crate) mod reason;
+pub(crate) mod rule;
 pub(crate) mod screening;
 mod sessions;
 pub(crate) mod stimulus_measures;

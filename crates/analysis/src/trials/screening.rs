@@ -9,6 +9,7 @@ use crate::trials::column::Column;
 use crate::trials::error::ExportError;
 use crate::trials::export::{Flow, Person};
 use crate::trials::reason::Reason;
+use crate::trials::rule::Rule;
 
 /// Whom the rule leaves out of a block of panels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -43,7 +44,7 @@ pub(super) fn screen(
             Some(Screening { block: name.to_owned(), response, applied, found })
         }));
         if block.exclude.is_some() {
-            flow.rules.push(format!("bs1534 ({name})"));
+            flow.rules.push(Rule::Bs1534(name.to_owned()));
         }
     }
     let out = screened.iter().filter(|it| it.applied).flat_map(|it| &it.found.people);

@@ -13,6 +13,7 @@ use crate::language::Language;
 use crate::report::document::Block;
 use crate::report::results::AboutPeople;
 use crate::report::section::Writer;
+use crate::trials::rule::Rule;
 
 impl Writer<'_> {
     /// Methods and results, to be copied.
@@ -43,8 +44,8 @@ impl Writer<'_> {
                 format!("{} personnes ont participé.", flow.people),
             ),
             out => language.pick(
-                format!("{} people took part; {out} were excluded by rules fixed beforehand ({}), which leaves {}.", flow.people, flow.rules.join(", "), flow.people_used),
-                format!("{} personnes ont participé ; {out} ont été exclues par des règles fixées à l’avance ({}), ce qui en laisse {}.", flow.people, flow.rules.join(", "), flow.people_used),
+                format!("{} people took part; {out} were excluded by rules fixed beforehand ({}), which leaves {}.", flow.people, Rule::listed(&flow.rules, language), flow.people_used),
+                format!("{} personnes ont participé ; {out} ont été exclues par des règles fixées à l’avance ({}), ce qui en laisse {}.", flow.people, Rule::listed(&flow.rules, language), flow.people_used),
             ),
         }];
         sentences.extend(self.about_people_in_paper());

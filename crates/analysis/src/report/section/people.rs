@@ -9,6 +9,7 @@ use crate::report::document::{Block, DataTable};
 use crate::report::figure::flow_chart::flow_chart;
 use crate::report::results::AboutPeople;
 use crate::report::section::{MOST_LEVELS, Writer};
+use crate::trials::rule::Rule;
 
 impl Writer<'_> {
     pub(crate) fn participants(&mut self) {
@@ -21,7 +22,7 @@ impl Writer<'_> {
                 "Le fichier de l’étude ne fixe aucune règle d’exclusion ; seules les sessions retirées et pilotes sont écartées.",
             );
         } else {
-            let rules = self.export.flow.rules.join(", ");
+            let rules = Rule::listed(&self.export.flow.rules, language);
             self.blocks.push(Block::Paragraph(language.pick(
                 format!("Rules of exclusion, fixed in the study file: {rules}."),
                 format!("Règles d’exclusion, fixées dans le fichier de l’étude : {rules}."),
