@@ -229,13 +229,13 @@ fn couplings() -> Couplings {
     let clips: Vec<Courses> = (0..3).map(|_| vec![course(), course()]).collect();
     let mut plays = Vec::new();
     for person in 0..5 {
-        for clip in 0..clips.len() {
+        for (clip, shown) in clips.iter().enumerate() {
             let mut follow = |shown: &Vec<f64>| -> Vec<f64> {
                 let own = course();
                 let seen = |at: usize| at.checked_sub(15).map_or(0.0, |before| shown[before]);
                 (0..INSTANTS).map(|at| 0.5 * seen(at) + own[at]).collect()
             };
-            let mut track: Courses = clips[clip].iter().map(&mut follow).collect();
+            let mut track: Courses = shown.iter().map(&mut follow).collect();
             let from = 11 * (person + 3 * clip) % (INSTANTS - 25);
             track.iter_mut().for_each(|course| course[from..from + 25].fill(f64::NAN));
             plays.push(CoupledPlay { person, clip, track });
