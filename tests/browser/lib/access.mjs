@@ -6,19 +6,25 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const standards = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
+/** WCAG 2.2 AA, as axe's tags. */
+export const WCAG = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"];
 
-/** What axe finds on the page as it stands, or in the part of it that a selector names. */
-export async function violations(page, part = "html") {
+/** What axe finds on the page as it stands, or in the part of it that a selector names. `except`: pairs of a rule and of what
+    the HTML of an element has that need not keep it. */
+export async function violations(page, part = "html", { tags = [...WCAG, "best-practice"], except = [] } = {}) {
   // Not by a script element: the pages allow none but their own.
   await page.evaluate(axe);
-  return page.evaluate(async ([part, tags]) => {
+  return page.evaluate(async ([part, tags, except]) => {
     // A colour on its way to another is not what anybody reads.
     const changing = document.getAnimations().filter((animation) => animation instanceof CSSTransition);
     await Promise.allSettled(changing.map((animation) => animation.finished));
     const { violations } = await window.axe.run(part, { runOnly: { type: "tag", values: tags } });
-    return violations.map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
-  }, [part, standards]);
+    const meant = (id, node) => except.some(([rule, piece]) => id === rule && node.html.includes(piece));
+    return violations
+      .map(({ id, help, nodes }) => ({ id, help, nodes: nodes.filter((node) => !meant(id, node)) }))
+      .filter(({ nodes }) => nodes.length > 0)
+      .map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
+  }, [part, tags, except]);
 }
 
 /** What sticks out of the window or its card, is cut off, or stands letter below letter: a tag and its text each. */

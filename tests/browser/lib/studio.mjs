@@ -1,10 +1,6 @@
 // The studio's page in tests: facts of a panel, sections, downloads, what axe finds.
 
-import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
-
-const require = createRequire(import.meta.url);
-const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+import { WCAG, violations as found } from "./access.mjs";
 
 /** A row of facts of a panel. */
 function row(page, panel, name) {
@@ -42,18 +38,8 @@ export async function violations(page) {
   // What follows the time scrolls below its ruler, which covers a part of some control wherever it stands: it is looked
   // at from its beginning.
   await page.locator(".studio-lanes").evaluate((lanes) => (lanes.scrollTop = 0));
-  await page.evaluate(axe);
-  return page.evaluate(async () => {
-    const tags = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"];
-    const { violations } = await globalThis.axe.run(document, { runOnly: tags });
-    // On a narrow screen an expression's box is narrow; the table below it does the same (WCAG 2.5.8,
-    // exception "equivalent").
-    const small = (id, node) => id === "target-size" && /class="segment"/.test(node.html);
-    return violations
-      .map(({ id, nodes }) => ({ id, nodes: nodes.filter((node) => !small(id, node)) }))
-      .filter(({ nodes }) => nodes.length > 0)
-      .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`);
-  });
+  // On a narrow screen an expression's box is narrow; the table below it does the same (WCAG 2.5.8, exception "equivalent").
+  return found(page, "html", { tags: WCAG, except: [["target-size", 'class="segment"']] });
 }
 
 /** Opens a section: by its tab, or one that is folded. */
