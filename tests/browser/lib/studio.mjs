@@ -1,5 +1,6 @@
 // The studio's page in tests: facts of a panel, sections, downloads, what axe finds.
 
+import { readFileSync } from "node:fs";
 import { WCAG, violations as found } from "./access.mjs";
 
 /** A row of facts of a panel. */
