@@ -1,4 +1,5 @@
 // What the studio works on: avatar, capture, marker map; opened, dropped, built in, or given by the command line.
+import { avatarName, takeName } from "./built-in.js";
 import { save } from "./export.js";
 import { numeral, say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
@@ -151,7 +152,7 @@ export class Sources {
     this.avatar = facts;
     this.#avatars += 1;
     const notes = facts.notes.map((note) => `; ${note}`).join("");
-    $("avatar-facts").textContent = say("avatar.facts", { file: facts.file, vertices: facts.vertices, shapes: facts.shapes.length, notes });
+    $("avatar-facts").textContent = say("avatar.facts", { file: avatarName(facts), vertices: facts.vertices, shapes: facts.shapes.length, notes });
     await this.#here();
   }
 
@@ -163,7 +164,7 @@ export class Sources {
       await this.#page.takeChanged(facts.frames, facts.rate_hz ?? 1);
     } else {
       const { frames, rate_hz: rate, duration_s: seconds, markers, system, warnings, notes } = facts.facts;
-      const words = [say("capture.markers", { file: facts.file, markers, frames, rate, seconds: numeral(seconds, 1) })];
+      const words = [say("capture.markers", { file: takeName(facts), markers, frames, rate, seconds: numeral(seconds, 1) })];
       if (system) words.push(system);
       $("take-facts").textContent = [...words, ...notes, ...warnings].join("; ");
       await this.#page.takeChanged(frames, rate);
@@ -190,7 +191,7 @@ export class Sources {
     const next = this.avatar ? (this.take ? null : "files.next-capture") : this.take ? "files.next-avatar" : "files.next-both";
     $("next").hidden = next === null;
     if (next) $("next").textContent = say(next);
-    $("files-brief").textContent = [this.avatar?.file, this.take?.file].filter(Boolean).join(", ");
+    $("files-brief").textContent = [this.avatar && avatarName(this.avatar), this.take && takeName(this.take)].filter(Boolean).join(", ");
     $("start").hidden = Boolean(this.avatar && this.take);
   }
 

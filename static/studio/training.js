@@ -1,5 +1,7 @@
 // What `regression` learns from: a capture and the weights that were played in it.
+import { takeName } from "./built-in.js";
 import { say } from "./texts.js";
+import { problemWords } from "./words-engine.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -46,9 +48,9 @@ export class TrainingFiles {
     if (!state) return null;
     const { take, weights, neutral, missing } = state;
     const facts = [];
-    if (take) facts.push(say("training.take", { ...take, rate: take.rate_hz }));
-    if (weights) facts.push(say("training.weights-facts", weights));
-    if (missing !== null) facts.push(missing);
+    if (take) facts.push(say("training.take", { ...take, file: takeName(take), rate: take.rate_hz }));
+    if (weights) facts.push(say("training.weights-facts", { ...weights, file: take?.builtIn ? takeName(take) : weights.file }));
+    if (missing !== null) facts.push(problemWords(missing));
     $("training-facts").textContent = facts.join("; ");
     $("training-neutral").hidden = neutral === null;
     [$("training-first").value, $("training-end").value] = neutral ?? ["", ""];

@@ -29,6 +29,8 @@ export const WORK = {
   "open.gaze": ["gaze", "un regard"],
   "built-in.head": ["Built-in head", "Tête intégrée"],
   "built-in.actor": ["Built-in actor", "Acteur intégré"],
+  "built-in.head-name": ["built-in head", "tête intégrée"],
+  "built-in.actor-name": ["built-in actor", "acteur intégré"],
   "built-in.building": ["Building the head", "Construction de la tête"],
   "built-in.playing": ["Playing the expressions", "Jeu des expressions"],
   "avatar.facts": ["{file}: {vertices} vertices, {shapes} shapes{notes}", "{file} : {vertices} sommets, {shapes} formes{notes}"],

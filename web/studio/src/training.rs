@@ -105,8 +105,9 @@ impl Workspace {
         let TrainingFiles { take, weights, .. } = &self.training;
         let neutral = take.as_ref().map(|(.., capture)| self.training_neutral(capture));
         json!({
-            "take": take.as_ref().map(|(name, _, capture)| json!({
+            "take": take.as_ref().map(|(name, origin, capture)| json!({
                 "file": name,
+                "builtIn": origin.is_built_in(),
                 "markers": capture.labels.len(),
                 "frames": capture.frames(),
                 "rate_hz": capture.rate_hz,

@@ -64,6 +64,12 @@ pub(crate) enum Origin {
     File { unit: Option<String>, rate_hz: Option<f64> },
 }
 
+impl Origin {
+    pub(crate) fn is_built_in(&self) -> bool {
+        matches!(self, Self::BuiltIn)
+    }
+}
+
 /// What is played on it.
 #[derive(Debug)]
 pub(crate) enum Take {
@@ -150,6 +156,7 @@ impl Workspace {
         let facts = json!({
             "bounds": [ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY)],
             "file": file,
+            "builtIn": face.built_in.is_some(),
             "name": avatar.name,
             "vertices": face.skin.mesh.positions.len(),
             "shapes": avatar.shape_names,
@@ -229,10 +236,10 @@ impl Workspace {
         self.layout.motion_changed();
         self.exertion.take_changed();
         let facts = match &take {
-            Take::Markers { name, recording, .. } => {
+            Take::Markers { name, origin, recording, .. } => {
                 let facts = CaptureFacts::of(recording);
-                json!({"file": name, "kind": "markers", "labels": recording.capture.labels,
-                       "facts": facts})
+                json!({"file": name, "builtIn": origin.is_built_in(), "kind": "markers",
+                       "labels": recording.capture.labels, "facts": facts})
             }
             Take::Weights { name, table, .. } => json!({
                 "file": name, "kind": "weights", "frames": table.frames.len(),
