@@ -3,6 +3,7 @@
 import { made } from "../stage/player.js";
 import { drawFigure } from "./figure.js";
 import { draw, partAt, swatch } from "./lines.js";
+import { lineName, numeral, say } from "./words.js";
 
 /// Shapes whose weights are drawn: those that move most.
 const SHAPES = 6;
@@ -13,15 +14,15 @@ export class ExertionPictures {
   #timeMs = 0;
   #moved;
   #body = made("canvas", { className: "exertion-body", role: "img" });
-  #noBody = made("p", { className: "soft", hidden: true }, "No motion is known: there is no body to draw.");
-  #about = made("p", { className: "soft" }, "In place, in step with the face. How far chest and shoulders move is drawn, not computed; when they move is the breath below.");
+  #noBody = made("p", { className: "soft", hidden: true }, say("no-body"));
+  #about = made("p", { className: "soft" }, say("about-body"));
   #courses = [];
   #breath = plot();
   #weights = plot();
   /// The body; the courses over all of it; breath and weights of the window.
   body = made("figure", { className: "exertion-figure" }, this.#body, this.#noBody, this.#about);
   courses = made("div", { className: "exertion-plots" });
-  clip = made("div", { className: "exertion-plots" }, picture("Breath in the window, share of a breath", this.#breath), picture("Weights in the window", this.#weights));
+  clip = made("div", { className: "exertion-plots" }, picture(say("breath"), this.#breath), picture(say("weights"), this.#weights));
 
   /// `moved`: hears where the window was dragged to, [from, to] s; null where it stays.
   constructor(moved = null) {
@@ -35,7 +36,7 @@ export class ExertionPictures {
     this.#drawing = drawing;
     if (drawing && this.#courses.length !== drawing.courses.length) {
       this.#courses = drawing.courses.map(() => plot());
-      this.courses.replaceChildren(...drawing.courses.map(({ label }, i) => picture(label, this.#courses[i])));
+      this.courses.replaceChildren(...drawing.courses.map(({ course }, i) => picture(say(`course.${course}`), this.#courses[i])));
       if (this.#moved) for (const { canvas } of this.#courses) this.#draggable(canvas);
     }
     this.#draw();
@@ -61,12 +62,12 @@ export class ExertionPictures {
     const long = drawing.spanS > MINUTES;
     const time = { from: 0, to: drawing.spanS / (long ? 60 : 1), unit: long ? "min" : "s" };
     const marked = [from, to].map((s) => s / drawing.spanS);
-    drawing.courses.forEach(({ label, lines }, i) => {
-      this.#courses[i].draw(lines.map((line) => ({ ...line, name: line.name || label })), { time, marked }, (from + seconds) / drawing.spanS);
+    drawing.courses.forEach(({ course, lines }, i) => {
+      this.#courses[i].draw(lines.map((line) => ({ ...line, name: lineName(line.name) || say(`course.${course}`) })), { time, marked }, (from + seconds) / drawing.spanS);
     });
     const window = { time: { from, to, unit: "s" } };
     this.#breath.canvas.parentElement.hidden = drawing.breath.length === 0;
-    this.#breath.draw(drawing.breath, { ...window, low: -1, high: 1 }, part);
+    this.#breath.draw(drawing.breath.map((line) => ({ ...line, name: lineName(line.name) })), { ...window, low: -1, high: 1 }, part);
     this.#weights.draw(this.#moving(), { ...window, high: 1 }, part);
   }
 
@@ -77,7 +78,7 @@ export class ExertionPictures {
     if (!figure) return;
     const lungs = breath[0]?.values ?? [0];
     drawFigure(this.#body, figure, seconds, lungs[Math.min(Math.round(seconds * rateHz), lungs.length - 1)]);
-    this.#body.setAttribute("aria-label", `The body as a stick figure, from its right and from the front, ${(windowS[0] + seconds).toFixed(1)} s after the beginning`);
+    this.#body.setAttribute("aria-label", say("body", { seconds: numeral(windowS[0] + seconds, 1) }));
   }
 
   // The shapes that move most, in one order for as long as the drawing is the same.
@@ -116,7 +117,7 @@ function bothSides(lines) {
   return lines.flatMap((line) => {
     const [stem, side] = [line.name.replace(/(Left|Right)$/, ""), /(Left|Right)$/.exec(line.name)?.[0]];
     if (!side || !alike(line, named.get(`${stem}${side === "Left" ? "Right" : "Left"}`))) return [line];
-    return side === "Left" ? [{ ...line, name: `${stem}, both sides` }] : [];
+    return side === "Left" ? [{ ...line, name: say("both-sides", { name: stem }) }] : [];
   });
 }
 

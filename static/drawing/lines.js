@@ -1,5 +1,7 @@
 // Lines over the width of a canvas, with their keys; over time with an axis, a playhead and a stretch that is marked.
 
+import { numeral, say } from "./words.js";
+
 // Told apart by colour-blind people and by their dashes.
 const COLOURS = ["#3b82c4", "#d9822b", "#3a9a6e", "#b0508c", "#8a6d3b", "#5b5bd6", "#c4453b", "#2a9d9d"];
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3]];
@@ -74,7 +76,7 @@ export function draw(canvas, { lines, log = false, unit, low, high, time, marked
     context.lineTo(width, row);
     context.stroke();
     context.fillStyle = ink;
-    context.fillText(log ? `1e${at.toFixed(0)}` : `${Number(at.toPrecision(2))} ${at === to ? unit : ""}`, 2, Math.max(row, 8));
+    context.fillText(log ? `1e${at.toFixed(0)}` : `${numeral(at, 0, 2)} ${at === to ? unit : ""}`, 2, Math.max(row, 8));
   }
   for (const mark of marks) {
     context.strokeStyle = css.getPropertyValue("--bad");
@@ -118,7 +120,7 @@ export function draw(canvas, { lines, log = false, unit, low, high, time, marked
     context.lineTo(x(part), height - (time ? bottom : 0));
     context.stroke();
   }
-  const words = lines.map(({ name, values }) => `${name}: highest ${Math.max(...sampled(values)).toPrecision(3)} ${unit}`);
+  const words = lines.map(({ name, values }) => say("highest", { name, value: `${numeral(Math.max(...sampled(values)), 0, 3)} ${unit}` }));
   canvas.setAttribute("aria-label", words.join("; "));
 }
 
@@ -137,13 +139,13 @@ export function timeAxis(context, { from, to, unit }, x, height, ink) {
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   context.fillStyle = ink;
   context.textAlign = "center";
-  const end = context.measureText(`${to.toFixed(digits)} ${unit}`).width;
+  const end = context.measureText(`${numeral(to, digits)} ${unit}`).width;
   for (let at = Math.ceil(from / step - 1e-6) * step; at <= to + 1e-6 * step; at += step) {
     const place = x((at - from) / length);
-    if (place < x(1) - end - 20) context.fillText(at.toFixed(digits), Math.max(place, x(0) + 4), height - 9);
+    if (place < x(1) - end - 20) context.fillText(numeral(at, digits), Math.max(place, x(0) + 4), height - 9);
   }
   context.textAlign = "end";
-  context.fillText(`${to.toFixed(digits)} ${unit}`, x(1), height - 9);
+  context.fillText(`${numeral(to, digits)} ${unit}`, x(1), height - 9);
   context.textAlign = "start";
 }
 

@@ -1,5 +1,5 @@
 // What leaves the studio: tables, animations, pictures, videos. All of it is made in the browser.
-import { say } from "./texts.js";
+import { numeral, say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 import { canEncode, encodedVideo } from "./encoder.js";
 import { openShots } from "./shots.js";
@@ -153,7 +153,7 @@ async function sheet(page) {
       for (let i = 0; i < SHEET_FRAMES; i++) {
         const timeMs = from + ((to - from) * i) / (SHEET_FRAMES - 1);
         bitmaps.push(await picture(panel, timeMs));
-        captions.push(`${i === 0 ? `${panel.title()}, ` : ""}${(timeMs / 1000).toFixed(2)} s`);
+        captions.push(`${i === 0 ? `${panel.title()}, ` : ""}${numeral(timeMs / 1000, 2)} s`);
         progress(bitmaps.length / (panels.length * SHEET_FRAMES));
       }
     }, [SHEET_CELL, SHEET_CELL]);

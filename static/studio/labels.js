@@ -3,7 +3,7 @@ import { made } from "../stage/player.js";
 import { draw, style } from "../drawing/lines.js";
 import { movable } from "./drag.js";
 import { isShown, whenShown } from "./tabs.js";
-import { say } from "./texts.js";
+import { numeral, say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -11,7 +11,7 @@ const $ = (id) => document.getElementById(id);
 const SURE = 0.6;
 const LEAST_FRAMES = 2;
 const date = () => new Date().toISOString().replace(/\.\d+Z/, "+00:00");
-const share = (probability) => probability.toFixed(2);
+const share = (probability) => numeral(probability, 2);
 
 export class Labels {
   #page;
@@ -154,7 +154,7 @@ export class Labels {
   }
 
   #words({ label, probability, second, confirmed, frames }) {
-    const [from, to] = frames.map((frame) => (frame / this.#rate).toFixed(2));
+    const [from, to] = frames.map((frame) => numeral(frame / this.#rate, 2));
     const next = second ? say("labels.then", { label: second.label, share: share(second.probability) }) : "";
     return confirmed ? say("labels.box-confirmed", { label, from, to }) : say("labels.box-suggested", { label, from, to, share: share(probability), next });
   }

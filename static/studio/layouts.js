@@ -148,7 +148,7 @@ export class Layouts {
     const drop = made("button", { type: "button", ariaLabel: say("layouts.drop-one", { name: label }) }, say("layouts.drop"));
     drop.addEventListener("click", () => this.#drop(index).catch(this.#page.report));
     [name.dataset.act, drop.dataset.act] = ["choose", "drop"];
-    const number = (value) => made("td", { className: "number" }, value === null ? "–" : value.toFixed(3));
+    const number = (value) => made("td", { className: "number" }, value === null ? "–" : numeral(value, 3));
     const row = made("tr", {}, made("td", {}, name), number(expectedMm), number(rehearsedMm), made("td", {}, drop));
     row.dataset.index = index;
     row.setAttribute("aria-selected", String(index === this.#chosen));

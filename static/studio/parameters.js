@@ -1,7 +1,7 @@
 // The parameters of a panel's method: numbers, words, and the tables of what it takes by name. Which
 // there are, with label, range, step and default, comes from the solver's own table.
 import { made } from "../stage/player.js";
-import { say } from "./texts.js";
+import { numeral, say } from "./texts.js";
 import { wordsOf } from "./words-methods.js";
 import { MarkerTable, ShapeTable, describe, number } from "./lists.js";
 
@@ -73,8 +73,8 @@ export class Parameters {
 
   #share(row, label) {
     const slider = made("input", { type: "range", min: 0, max: 1, step: row.step, value: row.default, name: row.key });
-    const shown = made("output", { className: "number" }, row.default.toFixed(2));
-    slider.addEventListener("input", () => ((shown.textContent = Number(slider.value).toFixed(2)), this.#changed()));
+    const shown = made("output", { className: "number" }, numeral(row.default, 2));
+    slider.addEventListener("input", () => ((shown.textContent = numeral(Number(slider.value), 2)), this.#changed()));
     return made("label", {}, made("span", {}, `${label} `, shown), slider);
   }
 
@@ -160,7 +160,7 @@ export class Parameters {
 
   #fill(input, value) {
     input.value = value;
-    if (input.type === "range") input.previousElementSibling.querySelector("output").textContent = Number(input.value).toFixed(2);
+    if (input.type === "range") input.previousElementSibling.querySelector("output").textContent = numeral(Number(input.value), 2);
   }
 
   /// Takes the parameters of a method that was saved. Throws where this page has no place for one of them.

@@ -1,7 +1,7 @@
 // The shapes of the chosen face: their weight at the play head, which are drawn as curves, one that is isolated.
 import { made } from "../stage/player.js";
 import { style } from "../drawing/lines.js";
-import { say } from "./texts.js";
+import { numeral, say } from "./texts.js";
 import { WORDS } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
@@ -114,7 +114,7 @@ export class Shapes {
     const from = this.#panel.frameAt(timeMs) * shapes.length;
     for (const [k, name] of shapes.entries()) {
       const own = this.#rows.get(name);
-      const text = clip.weights[from + k].toFixed(2);
+      const text = numeral(clip.weights[from + k], 2);
       if (!own || own.shown === text) continue;
       own.shown = text;
       own.value.textContent = text;

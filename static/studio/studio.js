@@ -19,7 +19,7 @@ import { Sources } from "./sources.js";
 import { StudyPane } from "./study.js";
 import { wireSplits } from "./splits.js";
 import { Tabs } from "./tabs.js";
-import { fill, language, say } from "./texts.js";
+import { fill, language, numeral, say } from "./texts.js";
 import { Timeline } from "./timeline.js";
 import { TrainingFiles } from "./training.js";
 import { problemWords } from "./words-engine.js";
@@ -28,6 +28,7 @@ const $ = (id) => document.getElementById(id);
 
 fill();
 const player = new Player();
+player.written = (seconds) => numeral(seconds, 2);
 player.words = { play: say("play"), pause: say("pause") };
 const tabs = new Tabs();
 let segments = [];

@@ -20,9 +20,7 @@ export function say(key, values = {}) {
   return words[LANGUAGES.indexOf(language)].replaceAll(/\{(\w+)\}/g, (whole, name) => (name in values ? String(values[name]) : whole));
 }
 
-/// A number as the language writes it.
-export const numeral = (value, digits) =>
-  value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false });
+export { numeral } from "../drawing/words.js";
 
 /// Puts the words into what the page's HTML names by keys: text, labels and placeholders.
 export function fill(root = document) {

@@ -4,7 +4,7 @@ import { draw } from "../drawing/lines.js";
 import { movable } from "./drag.js";
 import { newest } from "./newest.js";
 import { isShown, whenShown } from "./tabs.js";
-import { say } from "./texts.js";
+import { numeral, say } from "./texts.js";
 import { callWorker } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
@@ -132,7 +132,7 @@ export class Timeline {
     };
     const remove = made("button", { type: "button", ariaLabel: say("remove.what", { name: label }) }, "✕");
     remove.addEventListener("click", () => this.#set(this.#segments.filter((_, i) => i !== index), say("remove.what", { name: label })).catch(this.#page.report));
-    const clip = `${clip_s[0].toFixed(2)} – ${clip_s[1].toFixed(2)}`;
+    const clip = clip_s.map((s) => numeral(s, 2)).join(" – ");
     return made("tr", {}, made("td", {}, name), field(0), field(1), made("td", {}, clip), made("td", {}, remove));
   }
 

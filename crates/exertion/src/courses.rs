@@ -2,13 +2,16 @@
 
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
 use crate::chain::Series;
 use crate::expression::Expression;
 use crate::person::Person;
 use crate::rules::{Curves, Features};
 
 /// Something that is drawn over the seconds of a series.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Course {
     /// The heart rate.
     HeartRate,

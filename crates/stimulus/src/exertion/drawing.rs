@@ -36,8 +36,8 @@ pub struct ExertionDrawing {
 /// A course of an exertion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DrawnCourse {
-    /// What it is, with its unit.
-    pub label: &'static str,
+    /// What it is.
+    pub course: Course,
     /// Its lines.
     pub lines: Vec<DrawnLine>,
 }
@@ -78,7 +78,7 @@ impl ExertionDrawing {
         let step = frames.len().div_ceil(MOST_FRAMES).max(1);
         let curves = series.curves(person, expression);
         let course = |course: Course| DrawnCourse {
-            label: course.label(),
+            course,
             lines: series
                 .lines(course, &curves)
                 .into_iter()
