@@ -315,6 +315,12 @@ test("studio workbench: in French, on a tablet, in the dark", { skip: noBrowser,
     assert.equal((await overflow(page))[0], 0, "nothing sticks out");
     assert.deepEqual(await violations(page), []);
     await page.screenshot({ path: join(screenshotFolder("studio"), "workbench-tablet-fr-dark.png"), fullPage: true });
+    // What the engine says of the solve and refuses of a parameter, and numbers.
+    assert.match(await page.textContent(".studio-inspector .notice.warn"), /^les marqueurs de l’acteur sont à \d,\d mm \(eff\.\) de ceux de l’avatar/);
+    assert.equal(await page.textContent("#files-brief"), "tête intégrée, acteur intégré");
+    await page.evaluate(() => document.querySelectorAll(".studio-inspector details").forEach((details) => (details.open = true)));
+    await page.locator(".studio-inspector [name=kappa]").first().fill("-1");
+    await page.waitForFunction(() => [...document.querySelectorAll("p.problem:not([hidden])")].some(({ textContent }) => textContent === "vaut -1 ; donnez un nombre au-dessus de 0"));
     // The address goes before the browser.
     await page.goto(`${server.url}?backend=webgl2&lang=en`);
     assert.equal(await page.textContent("#tab-faces"), "Faces");
