@@ -80,7 +80,7 @@ fn needed() -> Result<Option<PathBuf>> {
 /// Clippy, natively and for the modules of the pages.
 fn lints() -> Tally {
     let mut tally = Tally::default();
-    let mut lint = cargo();
+    let mut lint = cargo_with_pages();
     lint.arg("clippy").args(locked()).args(["--release", "--workspace", "--all-targets"]);
     exclude_web(&mut lint);
     tally.check("clippy, native", lint.args(DENY));
@@ -99,6 +99,13 @@ fn lints() -> Tally {
         tally.check(&format!("clippy, wasm32, the canvas of {canvas}"), lint.args(DENY));
     }
     tally
+}
+
+/// Cargo, told where the pages are: the server would be built anew where one command says it and the next does not.
+fn cargo_with_pages() -> Command {
+    let mut command = cargo();
+    command.env("MIMIQUE_WEB_DIST", web::dist());
+    command
 }
 
 /// A warning fails.
@@ -131,7 +138,7 @@ fn dependencies(tally: &mut Tally) {
 
 /// Unit, property, golden and HTTP tests, and the examples of the documentation.
 fn native(tally: &mut Tally, python: Option<&Path>) -> Result<()> {
-    let mut tests = cargo();
+    let mut tests = cargo_with_pages();
     tests.args(["nextest", "run"]).args(locked()).args([
         "--release",
         "--workspace",
@@ -140,12 +147,12 @@ fn native(tally: &mut Tally, python: Option<&Path>) -> Result<()> {
     // Passed tests are shown too: one that skips says so there.
     tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
     exclude_web(&mut tests);
-    tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_WEB_DIST", web::dist());
+    tests.env("MIMIQUE_DATA", data());
     if let Some(python) = python {
         tests.env("MIMIQUE_PYTHON", python);
     }
     tally.tests("unit, property, golden and http tests", &mut tests)?;
-    let mut doc_tests = cargo();
+    let mut doc_tests = cargo_with_pages();
     doc_tests.arg("test").args(locked()).args(["--release", "--doc", "--workspace"]);
     exclude_web(&mut doc_tests);
     tally.check("doc tests", &mut doc_tests);
@@ -154,7 +161,7 @@ fn native(tally: &mut Tally, python: Option<&Path>) -> Result<()> {
 
 /// The documentation of every public item, without a warning.
 fn documentation(tally: &mut Tally) {
-    let mut docs = cargo();
+    let mut docs = cargo_with_pages();
     docs.arg("doc").args(locked()).args(["--workspace", "--no-deps", "--release"]);
     exclude_web(&mut docs);
     tally.check("documentation", docs.env("RUSTDOCFLAGS", "-D warnings"));

@@ -292,7 +292,9 @@ fn bounds_locks_and_importance_are_solved_and_come_back_as_settings() {
 fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
     let mut workspace = built_in();
     let method = r#"{"method": "regression", "basisVectors": 40}"#;
-    assert_eq!(workspace.training_state()["missing"], "open a range of motion and its weights");
+    let missing = &workspace.training_state()["missing"];
+    assert_eq!(missing["text"], "open a range of motion and its weights");
+    assert_eq!(missing["is"]["code"], "no-training");
     let state = workspace.built_in_training(1);
     assert_eq!(state["missing"], Value::Null);
     let facts = workspace.solve("a", method).unwrap();
@@ -313,10 +315,10 @@ fn regression_learns_from_files_what_it_learns_from_the_built_in_actor() {
     let mut workspace = built_in();
     let short: String = table.to_csv().lines().take(100).map(|line| format!("{line}\n")).collect();
     let state = workspace.training_weights("rom-weights.csv", short.as_bytes()).unwrap();
-    assert_eq!(state["missing"], "open the capture that these weights belong to");
+    assert_eq!(state["missing"]["text"], "open the capture that these weights belong to");
     let state = workspace.training_take("rom.csv", text.as_bytes(), None, None).unwrap();
     let missing = format!("rom.csv has {frames} frames, rom-weights.csv 99; give a row");
-    assert!(state["missing"].as_str().unwrap().starts_with(&missing), "{state}");
+    assert!(state["missing"]["text"].as_str().unwrap().starts_with(&missing), "{state}");
     assert!(workspace.solve("a", method).unwrap_err().to_string().contains("rom-weights.csv 99"));
     let state = workspace.training_weights("rom-weights.csv", table.to_csv().as_bytes()).unwrap();
     assert_eq!((&state["missing"], &state["neutral"]), (&Value::Null, &serde_json::json!([0, 60])));
