@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { go, leave, phase, place, toFirstTrial, until } from "./lib/participant.mjs";
+import { go, leave, phase, place, storedEvents, toFirstTrial, until } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -77,8 +77,7 @@ test("keys: pressed while the clip plays, by key and by mouse, and after it", { 
       }
       here = await leave(page, here, 60_000);
       if (how === "key") {
-        const session = await page.evaluate(() => JSON.parse(localStorage.getItem("mimique/speeded")).started.session);
-        const answered = async () => (await (await fetch(`${server.url}/api/sessions/${session}`)).json()).events.find(({ body }) => body.type === "answered");
+        const answered = async () => (await storedEvents(page, server, "speeded")).find(({ type }) => type === "answered");
         await until("the answer is stored", async () => (await answered()) !== undefined);
         const late = (await answered()).at_ms - (await page.evaluate(() => window.pressedAt));
         assert.ok(Math.abs(late) < 1, `the time of the press itself, not ${late} ms later`);

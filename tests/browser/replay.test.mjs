@@ -137,7 +137,7 @@ test("replay: what somebody saw is drawn again, a late frame late", { skip: unab
       if (answered) {
         const [, after] = /(?:after the first frame|after): (\d+\.\d\d) s/.exec(said) ?? [];
         const from = plays.find((play) => play.step === step)?.log.onset_ms ?? events.find((event) => event.type === "page_shown" && event.step === step).at_ms;
-        assert.ok(Math.abs(Number(after) - (answered.at_ms - from) / 1000) < 0.006, `${step}: ${after} s`);
+        assert.ok(Math.abs(Number(after) - (answered.at_ms - from) / 1000) < 0.006, `${step}: ${after} s, by the log ${(answered.at_ms - from) / 1000} s`);
       }
       if (step?.startsWith("faces")) {
         await page.waitForFunction(() => document.getElementById("same").textContent, undefined, { timeout: 120_000 });

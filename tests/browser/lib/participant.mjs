@@ -127,7 +127,7 @@ export async function until(what, holds, ms = 90_000) {
 export async function storedEvents(page, server, study) {
   const session = await page.evaluate((key) => JSON.parse(localStorage.getItem(key)).started.session, `mimique/${study}`);
   const { events } = await (await fetch(`${server.url}/api/sessions/${session}`)).json();
-  return events.map(({ body }) => body);
+  return events.map(({ at_ms, body }) => ({ at_ms, ...body }));
 }
 
 /** Goes to a study and on to its first trial, by the keyboard; resolves with the trial's place once it can be played. */
