@@ -23,10 +23,16 @@ import { fill, language, numeral, say } from "./texts.js";
 import { Timeline } from "./timeline.js";
 import { TrainingFiles } from "./training.js";
 import { problemWords } from "./words-engine.js";
+import { sayProblems } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
 
 fill();
+sayProblems({
+  problem: problemWords,
+  broke: (reason) => say("worker.broke", { reason }),
+  unloaded: (reason) => say("worker.unloaded", { reason: reason || say("worker.absent") }),
+});
 const player = new Player();
 player.written = (seconds) => numeral(seconds, 2);
 player.words = { play: say("play"), pause: say("pause") };

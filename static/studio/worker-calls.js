@@ -2,8 +2,6 @@
 
 import { moduleWorker } from "../module-worker.js";
 import { sendPanic } from "../panics.js";
-import { say } from "./texts.js";
-import { problemWords } from "./words-engine.js";
 
 const JSON_CALLS = new Set([
   "avatarFile", "builtInAvatar", "takeFile", "builtInTake", "mapFile", "suggestMap", "place", "setNeutral",
@@ -15,6 +13,18 @@ const JSON_CALLS = new Set([
   "makeLayout", "layoutFile", "layoutFromMap", "moveLayoutMarker", "dropLayoutMarker", "undoLayout", "rehearseLayout",
   "layoutState", "exertion", "exertionFile", "exertionModel", "studyLibrary", "study",
 ]);
+
+// How problems are said: in English, until a page says that it has words of its own.
+let words = {
+  problem: ({ place, text }) => (place === null ? text : `${place}: ${text}`),
+  broke: (reason) => `${reason}; the studio's worker broke: reload the page`,
+  unloaded: (reason) => `${reason || "the studio's worker could not be loaded"}; reload the page`,
+};
+
+/// Has problems said by others' words: {problem({place, text, is}), broke(reason), unloaded(reason)}.
+export function sayProblems(others) {
+  words = others;
+}
 
 let worker = null;
 let next = 1;
@@ -39,12 +49,12 @@ function start() {
     if (data.error === undefined) {
       job.resolve(JSON_CALLS.has(job.call) ? JSON.parse(data.result) : data.result);
     } else {
-      const words = data.problem ? problemWords(JSON.parse(data.problem)) : data.error;
-      job.reject(new Error(data.panicked ? say("worker.broke", { reason: words }) : words));
+      const reason = data.problem ? words.problem(JSON.parse(data.problem)) : data.error;
+      job.reject(new Error(data.panicked ? words.broke(reason) : reason));
     }
   };
   started.onerror = (event) => {
-    const reason = new Error(say("worker.unloaded", { reason: event.message || say("worker.absent") }));
+    const reason = new Error(words.unloaded(event.message));
     for (const { reject } of jobs.values()) reject(reason);
     jobs.clear();
   };
