@@ -53,7 +53,7 @@ pub struct Packages {
 pub fn make(out: &Path, work: &Path) -> Result<Packages> {
     let mut stage = templates("xtask/package/npm")?;
     for file in files::below(&web::dist())? {
-        if MODULES.iter().any(|name| file.name.starts_with(name)) && file.name != LEFT_OUT {
+        if is_of_stage(&file.name) {
             stage.push(file.within("modules"));
         }
     }
@@ -69,6 +69,11 @@ pub fn make(out: &Path, work: &Path) -> Result<Packages> {
         stage: packed(&stage, out, &work.join("npm"))?,
         jspsych_plugin: packed(&plugin, out, &work.join("jspsych"))?,
     })
+}
+
+/// Whether a file of the pages belongs to the stage.
+fn is_of_stage(name: &str) -> bool {
+    MODULES.iter().any(|module| name.starts_with(module)) && name != LEFT_OUT
 }
 
 fn packed(whole: &[File], out: &Path, folder: &Path) -> Result<PathBuf> {
@@ -221,6 +226,22 @@ mod tests {
             let page = String::from_utf8(page.unwrap().bytes).unwrap();
             assert!(page.contains(REPOSITORY) && !page.contains("{repository}"), "{folder}");
         }
+    }
+
+    /// Before anything is built: whatever the package's scripts import is one of them, or a module that is built.
+    #[test]
+    fn scripts_of_the_stage_import_nothing_else() {
+        let scripts = files::below(&root().join("static")).unwrap();
+        let scripts = scripts.into_iter().filter(|file| is_of_stage(&file.name));
+        let mut whole: Vec<File> = scripts.map(|file| file.within("modules")).collect();
+        assert!(whole.len() > 10, "{}", whole.len());
+        for module in ["adaptive", "solver", "stage_webgl", "stage_webgpu", "studio"] {
+            for built in [format!("{module}.js"), format!("{module}_bg.wasm")] {
+                whole.push(File::text(format!("modules/{built}"), ""));
+            }
+        }
+        whole.extend(templates("xtask/package/npm").unwrap());
+        imports_lead_somewhere(&whole).unwrap();
     }
 
     #[test]
