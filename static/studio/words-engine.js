@@ -2,8 +2,8 @@
 // comes as a code with its values and as a sentence in English (`text`), which the English page shows.
 import { language, numeral } from "./texts.js";
 
-const few = (names) => (names.length > 6 ? `${names.slice(0, 6).join(", ")} et ${names.length - 6} autres` : names.join(", "));
 const counted = (count, one, many) => `${count} ${count < 2 ? one : many}`;
+const few = (names) => (names.length > 6 ? `${names.slice(0, 6).join(", ")} et ${counted(names.length - 6, "autre", "autres")}` : names.join(", "));
 const images = (count) => counted(count, "image", "images");
 
 /// What eyes do not do (crates/stimulus/src/checks/gaze.rs, GazeFault).
