@@ -3,12 +3,9 @@
 
 use anyhow::{Context as _, Result, bail};
 
+use crate::packed;
 use crate::process::say;
 use crate::web::dist;
-
-/// As the server's build compresses them.
-#[path = "../../crates/server/src/files/tight_gzip.rs"]
-mod tight_gzip;
 
 /// What is downloaded together.
 struct Budget {
@@ -123,5 +120,5 @@ pub fn check() -> Result<()> {
 fn gzipped(name: &str) -> Result<usize> {
     let path = dist().join(name);
     let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
-    Ok(tight_gzip::gzip(&bytes)?.len())
+    Ok(packed::pack(name, &bytes)?.gzip)
 }

@@ -21,6 +21,7 @@ mod budget;
 mod demo;
 mod install;
 mod package;
+mod packed;
 mod process;
 mod server;
 mod tally;

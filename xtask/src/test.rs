@@ -28,14 +28,17 @@ pub fn run(args: &Args) -> Result<()> {
     say(&format!("real data are looked for in {}", data().display()));
     let python = needed()?;
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
-    // The server embeds the pages, so they come before everything that runs it. Their linking keeps one core: the lints,
-    // which run nothing, are beside it.
-    let linted = std::thread::scope(|scope| {
-        let linting = scope.spawn(lints);
+    // Linking a module of the pages occupies one core: what does not embed the pages is checked and compiled alongside.
+    let beside = std::thread::scope(|scope| {
+        let beside = scope.spawn(|| {
+            let mut beside = lints();
+            beside.check("compiling the tests", nextest().args(WITHOUT_PAGES).arg("--no-run"));
+            beside
+        });
         tally.done("pages", || web::all(true));
-        linting.join()
+        beside.join()
     });
-    tally.add(linted.map_err(|_| anyhow!("the lints have stopped"))?);
+    tally.add(beside.map_err(|_| anyhow!("lints and compilation have stopped"))?);
     tally.done("size of the pages", budget::check);
     dependencies(&mut tally);
     native(&mut tally, python.as_deref())?;
@@ -84,24 +87,30 @@ fn lints() -> Tally {
     lint.arg("clippy").args(locked()).args(["--release", "--workspace", "--all-targets"]);
     exclude_web(&mut lint);
     tally.check("clippy, native", lint.args(DENY));
-    let modules = [
-        "mimique-app",
-        "mimique-web-solver",
-        "mimique-web-adaptive",
-        "mimique-web-report",
-        "mimique-web-studio",
-    ];
-    tally.check("clippy, wasm32", lint_wasm().args(packages(&modules)).args(DENY));
-    for canvas in ["webgpu", "webgl"] {
-        let mut lint = lint_wasm();
-        lint.args(packages(&["mimique-web-stage"]));
-        lint.args(["--no-default-features", "--features", canvas]);
-        tally.check(&format!("clippy, wasm32, the canvas of {canvas}"), lint.args(DENY));
+    // The canvas has a feature for each graphics back end; one call checks everything else along with one of them.
+    for (canvas, others) in [("webgpu", &MODULES[..]), ("webgl", &[])] {
+        let mut lint = cargo();
+        lint.arg("clippy").args(locked()).args(["--release", "--target", "wasm32-unknown-unknown"]);
+        lint.args(packages(others)).args(packages(&WEB));
+        lint.args(["--no-default-features", "--features", &format!("mimique-web-stage/{canvas}")]);
+        tally.check(&format!("clippy, wasm32, {canvas}"), lint.args(DENY));
     }
     tally
 }
 
-/// Cargo, told where the pages are: the server would be built anew where one command says it and the next does not.
+/// The modules of the pages but the canvas, for clippy.
+const MODULES: [&str; 5] = [
+    "mimique-app",
+    "mimique-web-solver",
+    "mimique-web-adaptive",
+    "mimique-web-report",
+    "mimique-web-studio",
+];
+
+/// Everything but the program, which embeds the pages: what nextest can compile before they are built.
+const WITHOUT_PAGES: [&str; 4] = ["--exclude", "mimique", "--exclude", "mimique-pages"];
+
+/// Cargo with the folder of the pages: a command without it would rebuild what embeds them.
 fn cargo_with_pages() -> Command {
     let mut command = cargo();
     command.env("MIMIQUE_WEB_DIST", web::dist());
@@ -111,14 +120,7 @@ fn cargo_with_pages() -> Command {
 /// A warning fails.
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
-/// Clippy for browsers, of packages to be named.
-fn lint_wasm() -> Command {
-    let mut lint = cargo();
-    lint.arg("clippy").args(locked()).args(["--release", "--target", "wasm32-unknown-unknown"]);
-    lint
-}
-
-fn packages(names: &[&'static str]) -> impl Iterator<Item = &'static str> {
+fn packages<'a>(names: &'a [&'static str]) -> impl Iterator<Item = &'static str> + use<'a> {
     names.iter().flat_map(|name| ["--package", name])
 }
 
@@ -136,17 +138,20 @@ fn dependencies(tally: &mut Tally) {
     }
 }
 
+/// The test runner on the whole workspace, as the binary of the browser tests is compiled, too.
+fn nextest() -> Command {
+    let mut tests = cargo_with_pages();
+    tests.args(["nextest", "run"]).args(locked()).args(["--release", "--workspace"]);
+    exclude_web(&mut tests);
+    tests
+}
+
 /// Unit, property, golden and HTTP tests, and the examples of the documentation.
 fn native(tally: &mut Tally, python: Option<&Path>) -> Result<()> {
-    let mut tests = cargo_with_pages();
-    tests.args(["nextest", "run"]).args(locked()).args([
-        "--release",
-        "--workspace",
-        "--no-fail-fast",
-    ]);
+    let mut tests = nextest();
+    tests.arg("--no-fail-fast");
     // Passed tests are shown too: one that skips says so there.
     tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
-    exclude_web(&mut tests);
     tests.env("MIMIQUE_DATA", data());
     if let Some(python) = python {
         tests.env("MIMIQUE_PYTHON", python);

@@ -1,23 +1,25 @@
 //! The pages: wasm modules and static files, gathered in `target/web-dist`, ready to be embedded.
 //!
-//! | module | crate | profile | what for |
-//! |---|---|---|---|
-//! | `app` | `web/app` | `web` | the participant's pages |
-//! | `stage_webgpu` | `web/stage` | `web` | the canvas, WebGPU alone |
-//! | `stage_webgl` | `web/stage` | `web` | the canvas, WebGL2 |
-//! | `adaptive` | `web/adaptive` | `web-solver` | the levels of adaptive blocks; studies with one alone load it |
-//! | `studio` | `web/studio` | `web-solver` | the studio's worker |
-//! | `report` | `web/report` | `web-report` | the report of a study, for the pages of a capsule |
-//! | `solver` | `web/solver` | `web-solver` | the solver's worker |
-//! | `orders` | an example of `web/app` | `web` | kept orders, for a test; not a part of the pages |
-//! | `exertion_bits` | an example of `web/solver` | `web-solver` | exertion's numbers, for a test; not a part of the pages |
-//! | `panicking` | an example of `web/panics` | `web` | a solver that panics, for a test; not a part of the pages |
+//! | module | crate | what for |
+//! |---|---|---|
+//! | `app` | `web/app` | the participant's pages |
+//! | `stage_webgpu` | `web/stage` | the canvas, WebGPU alone |
+//! | `stage_webgl` | `web/stage` | the canvas, WebGL2 |
+//! | `adaptive` | `web/adaptive` | the levels of adaptive blocks; only studies with such a block load it |
+//! | `studio` | `web/studio` | the studio's worker |
+//! | `report` | `web/report` | the report of a study, for the pages of a capsule |
+//! | `solver` | `web/solver` | the solver's worker |
+//! | `orders` | an example of `web/app` | stored orders, for a test; not a part of the pages |
+//! | `exertion_bits` | an example of `web/solver` | exertion's numbers, for a test; not a part of the pages |
+//! | `panicking` | an example of `web/panics` | a solver that panics, for a test; not a part of the pages |
+//!
+//! All of them are built with the profile `web`, whose packages have optimisation levels of their own (`Cargo.toml`), so
+//! that every dependency compiles once.
 //!
 //! `wasm-bindgen` runs as a library of the same version as the crates use; `wasm-opt` (npm's
 //! binaryen) and `esbuild` make the files smaller where node is there.
 
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -25,6 +27,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use sha2::{Digest, Sha256};
 
 use crate::install::{self, Found};
+use crate::packed;
 use crate::process::{cargo, locked, root, run as run_program, say, target};
 
 /// Options of `cargo xtask web`.
@@ -46,55 +49,18 @@ struct Module {
     /// Whether it is an example: built as the page is, for a test, and gathered nowhere.
     example: bool,
     features: Option<&'static str>,
-    profile: &'static str,
     opt_level: &'static str,
 }
 
+/// The largest come first: they are made small while the others compile.
 const MODULES: [Module; 10] = [
     Module {
-        name: "app",
-        package: "mimique-app",
-        library: "mimique_app",
+        name: "studio",
+        package: "mimique-web-studio",
+        library: "mimique_web_studio",
         example: false,
         features: None,
-        profile: "web",
-        opt_level: "-Oz",
-    },
-    Module {
-        name: "adaptive",
-        package: "mimique-web-adaptive",
-        library: "mimique_web_adaptive",
-        example: false,
-        features: None,
-        profile: "web-solver",
         opt_level: "-O3",
-    },
-    Module {
-        name: "orders",
-        package: "mimique-app",
-        library: "golden_orders",
-        example: true,
-        features: None,
-        profile: "web",
-        opt_level: "-Oz",
-    },
-    Module {
-        name: "exertion_bits",
-        package: "mimique-web-solver",
-        library: "exertion_bits",
-        example: true,
-        features: None,
-        profile: "web-solver",
-        opt_level: "-O3",
-    },
-    Module {
-        name: "panicking",
-        package: "mimique-web-panics",
-        library: "panicking",
-        example: true,
-        features: None,
-        profile: "web",
-        opt_level: "-Oz",
     },
     Module {
         name: "report",
@@ -102,7 +68,6 @@ const MODULES: [Module; 10] = [
         library: "mimique_web_report",
         example: false,
         features: None,
-        profile: "web-report",
         opt_level: "-O3",
     },
     Module {
@@ -111,25 +76,22 @@ const MODULES: [Module; 10] = [
         library: "mimique_web_solver",
         example: false,
         features: None,
-        profile: "web-solver",
         opt_level: "-O3",
     },
     Module {
-        name: "studio",
-        package: "mimique-web-studio",
-        library: "mimique_web_studio",
+        name: "adaptive",
+        package: "mimique-web-adaptive",
+        library: "mimique_web_adaptive",
         example: false,
         features: None,
-        profile: "web-solver",
         opt_level: "-O3",
     },
     Module {
-        name: "stage_webgpu",
-        package: "mimique-web-stage",
-        library: "mimique_web_stage",
+        name: "app",
+        package: "mimique-app",
+        library: "mimique_app",
         example: false,
-        features: Some("webgpu"),
-        profile: "web",
+        features: None,
         opt_level: "-Oz",
     },
     Module {
@@ -138,10 +100,46 @@ const MODULES: [Module; 10] = [
         library: "mimique_web_stage",
         example: false,
         features: Some("webgl"),
-        profile: "web",
+        opt_level: "-Oz",
+    },
+    Module {
+        name: "stage_webgpu",
+        package: "mimique-web-stage",
+        library: "mimique_web_stage",
+        example: false,
+        features: Some("webgpu"),
+        opt_level: "-Oz",
+    },
+    Module {
+        name: "exertion_bits",
+        package: "mimique-web-solver",
+        library: "exertion_bits",
+        example: true,
+        features: None,
+        opt_level: "-O3",
+    },
+    Module {
+        name: "orders",
+        package: "mimique-app",
+        library: "golden_orders",
+        example: true,
+        features: None,
+        opt_level: "-Oz",
+    },
+    Module {
+        name: "panicking",
+        package: "mimique-web-panics",
+        library: "panicking",
+        example: true,
+        features: None,
         opt_level: "-Oz",
     },
 ];
+
+/// Where linked modules wait for `wasm-bindgen` and `wasm-opt`.
+fn unfinished() -> PathBuf {
+    target().join("web-modules/linked")
+}
 
 /// What `wasm-opt` may read and write.
 const FEATURES: [&str; 4] = [
@@ -215,17 +213,18 @@ fn build(wanted: impl Fn(&Module) -> bool, optimise: bool) -> Result<()> {
     let tools = if optimise { tools()? } else { None };
     let wasm_opt = tools.as_ref().map(|folder| folder.join("binaryen/bin/wasm-opt"));
     let wanted: Vec<&Module> = MODULES.iter().filter(|module| wanted(module)).collect();
-    // Linking with link-time optimisation keeps one core: the modules of the profiles, which have folders and locks
-    // of their own, are built beside each other; the report, which is built on all cores, follows what participants load.
-    let of_profile = |profile: &str| -> Result<()> {
-        let mut own = wanted.iter().filter(|module| module.profile == profile);
-        own.try_for_each(|module| module.build(wasm_opt.as_deref()))
-    };
+    // Compiling and linking a module keeps cargo's lock; it is made smaller while the next one compiles.
     std::thread::scope(|scope| -> Result<()> {
-        let speed = scope.spawn(|| of_profile("web-solver"));
-        of_profile("web")?;
-        of_profile("web-report")?;
-        speed.join().map_err(|_| anyhow!("the build of the solver's modules has stopped"))?
+        let mut finishing = Vec::new();
+        for module in wanted {
+            module.compile()?;
+            let wasm_opt = wasm_opt.as_deref();
+            finishing.push(scope.spawn(move || module.finish(wasm_opt)));
+        }
+        for finished in finishing {
+            finished.join().map_err(|_| anyhow!("a module was not finished"))??;
+        }
+        Ok(())
     })?;
     gather(tools.map(|folder| folder.join("esbuild/bin/esbuild")).as_deref())
 }
@@ -248,7 +247,16 @@ impl Module {
         target().join("web-modules").join(self.name)
     }
 
-    fn build(&self, optimiser: Option<&Path>) -> Result<()> {
+    /// Where the compiler writes the module.
+    fn raw(&self) -> PathBuf {
+        target()
+            .join("wasm32-unknown-unknown/web")
+            .join(if self.example { "examples" } else { "" })
+            .join(format!("{}.wasm", self.library))
+    }
+
+    /// Compiles and links the module, to where [`Module::finish`] finds it.
+    fn compile(&self) -> Result<()> {
         say(&format!("building {}", self.name));
         let mut command = cargo();
         command.arg("rustc").args(locked()).args(["--target", "wasm32-unknown-unknown"]);
@@ -257,17 +265,27 @@ impl Module {
             // cargo leaves link-time optimisation out where an rlib is built along.
             false => command.args(["--lib", "--crate-type", "cdylib"]),
         };
-        command.args(["--package", self.package, "--profile", self.profile]);
+        command.args(["--package", self.package, "--profile", "web"]);
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
         }
         run_program(&mut command)?;
-        let raw = target()
-            .join("wasm32-unknown-unknown")
-            .join(self.profile)
-            .join(if self.example { "examples" } else { "" })
-            .join(format!("{}.wasm", self.library));
+        // The canvas is built twice from one library: the next build replaces the file.
+        let raw = self.raw();
+        fs::create_dir_all(unfinished())?;
+        fs::copy(&raw, self.unfinished()).with_context(|| raw.display().to_string())?;
+        Ok(())
+    }
 
+    /// The linked module, under its own name.
+    fn unfinished(&self) -> PathBuf {
+        unfinished().join(format!("{}.wasm", self.name))
+    }
+
+    /// Gives the linked module its script and, unless only tests load it, makes it small.
+    fn finish(&self, optimiser: Option<&Path>) -> Result<()> {
+        let raw = self.unfinished();
+        let optimiser = optimiser.filter(|_| !self.example);
         let out = self.out();
         let stamp = out.join("stamp");
         let mark = self.mark(&raw, optimiser)?;
@@ -336,6 +354,15 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
         minify(esbuild, &mut files)?;
     }
 
+    say("the pages, in bytes, with gzip and with brotli:");
+    let mut stems = Vec::new();
+    for (name, bytes) in &files {
+        let small = packed::pack(name, bytes)?;
+        say(&format!("  {name:32} {:>9} {:>9} {:>9}", bytes.len(), small.gzip, small.brotli));
+        stems.push(small.stem);
+    }
+    packed::remove_all_but(&stems)?;
+
     let dist = dist();
     fs::create_dir_all(&dist)?;
     let mut stale = Vec::new();
@@ -343,7 +370,6 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
     for (name, _) in stale.iter().filter(|(n, _)| !files.iter().any(|(f, _)| f == n)) {
         fs::remove_file(dist.join(name))?;
     }
-    say("the pages, in bytes and gzipped (what the server has embedded is a twentieth smaller):");
     for (name, bytes) in &files {
         let path = dist.join(name);
         if fs::read(&path).ok().as_deref() != Some(bytes) {
@@ -352,9 +378,6 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
             }
             fs::write(&path, bytes)?;
         }
-        let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-        gzip.write_all(bytes)?;
-        say(&format!("  {name:32} {:>9} {:>9}", bytes.len(), gzip.finish()?.len()));
     }
     Ok(())
 }

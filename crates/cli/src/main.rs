@@ -27,6 +27,7 @@ mod motion;
 mod new;
 mod order;
 mod output;
+mod pages;
 mod power;
 mod preview;
 mod repair;

@@ -35,10 +35,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
-    let assets = match &args.web_dir {
-        Some(folder) => Assets::from_folder(folder)?,
-        None => Assets::embedded()?,
-    };
+    let assets = crate::pages::assets(args.web_dir.as_deref())?;
     let files = given(&args)?;
     // Studies that the studio makes are hosted for as long as it is open.
     let folder = tempfile::tempdir().context("a folder for what the studio makes")?;

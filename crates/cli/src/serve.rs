@@ -151,10 +151,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         .with_max_level(tracing::Level::INFO)
         .init();
     let settings = args.settings()?;
-    let assets = match &args.web_dir {
-        Some(folder) => Assets::from_folder(folder)?,
-        None => Assets::embedded()?,
-    };
+    let assets = crate::pages::assets(args.web_dir.as_deref())?;
     let cannot_listen =
         || format!("{}: cannot listen there; choose another address by --listen", args.listen);
     // A port that is taken is said before the stimuli are prepared.

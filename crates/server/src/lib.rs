@@ -53,7 +53,7 @@ mod studio;
 mod uploads;
 
 pub use accounts::links::reset_link;
-pub use files::assets::{Assets, AssetsError};
+pub use files::assets::{Assets, AssetsError, EmbeddedFile};
 pub use files::packs::{PackError, PackStore};
 pub use hosting::{Hosting, prepare_hosting};
 pub use http::router;

@@ -90,10 +90,7 @@ pub fn run(args: &Args, json: bool) -> anyhow::Result<()> {
         "{}: a capsule is a ZIP archive; give --out a name that ends in .zip",
         place(&args.out)
     );
-    let assets = match &args.web_dir {
-        Some(folder) => Assets::from_folder(folder)?,
-        None => Assets::embedded()?,
-    };
+    let assets = crate::pages::assets(args.web_dir.as_deref())?;
     let checked = checked_study(&args.study)?;
     let logs = Logs::read(&args.events).with_context(|| place(&args.events))?;
     let answers = Answers::read(&args.export, checked.study(), &logs, args.keep_texts)

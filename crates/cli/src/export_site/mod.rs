@@ -54,10 +54,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
-    let assets = match &args.web_dir {
-        Some(folder) => Assets::from_folder(folder)?,
-        None => Assets::embedded()?,
-    };
+    let assets = crate::pages::assets(args.web_dir.as_deref())?;
     let place = || args.out.display().to_string();
     is_free(&args)?;
     let checked = checked_study(&args.study)?;

@@ -13,15 +13,18 @@ use super::{compression, folder};
 use crate::files::static_file::{StaticFile, content_type};
 use crate::participant::first_page::first_page;
 
-/// A file that `build.rs` embedded.
-struct EmbeddedFile {
-    name: &'static str,
-    raw: &'static [u8],
-    brotli: Option<&'static [u8]>,
-    gzip: Option<&'static [u8]>,
+/// A file that is part of the program, with its compressed forms.
+#[derive(Debug, Clone, Copy)]
+pub struct EmbeddedFile {
+    /// Path below the folder of the pages.
+    pub name: &'static str,
+    /// The content.
+    pub raw: &'static [u8],
+    /// The brotli form, where it saves at least a twentieth.
+    pub brotli: Option<&'static [u8]>,
+    /// The gzip form, where it saves at least a twentieth.
+    pub gzip: Option<&'static [u8]>,
 }
-
-static EMBEDDED: &[EmbeddedFile] = include!(concat!(env!("OUT_DIR"), "/embedded_files.rs"));
 
 /// The pages' files by name.
 #[derive(Debug, Clone)]
@@ -56,12 +59,13 @@ pub enum AssetsError {
 }
 
 impl Assets {
-    /// The pages inside the binary.
-    pub fn embedded() -> Result<Self, AssetsError> {
-        if EMBEDDED.is_empty() {
+    /// The pages inside the program; an error if it was compiled before the pages were built.
+    pub fn embedded(files: impl IntoIterator<Item = EmbeddedFile>) -> Result<Self, AssetsError> {
+        let mut files = files.into_iter().peekable();
+        if files.peek().is_none() {
             return Err(AssetsError::NotEmbedded);
         }
-        Self::new(EMBEDDED.iter().map(|file| {
+        Self::new(files.map(|file| {
             let stored = StaticFile {
                 content_type: content_type(file.name),
                 raw: Bytes::from_static(file.raw),
