@@ -587,8 +587,8 @@ fn marker_sites_name_the_same_places_on_everyone() {
 
 #[test]
 fn the_docs_give_every_shape_its_unit_and_muscle() {
-    let table = include_str!("../src/facs.md");
-    let docs = include_str!("../../../docs/guide/avatars.md");
+    let table = include_str!("../../src/facs.md");
+    let docs = include_str!("../../../../docs/guide/avatars.md");
     assert!(
         docs.contains(table),
         "docs/guide/avatars.md lacks the table of crates/actor/src/facs.md"
