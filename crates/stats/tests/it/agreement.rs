@@ -178,7 +178,7 @@ fn record(peer: &str, count: usize, found: &[(&str, usize, f64)]) {
         return;
     }
     let mut text = format!(
-        "# {count} random data sets with ties: the library and {peer}\n\nBy `MIMIQUE_AGREEMENT={count} cargo test --release -p mimique-stats --test agreement`.\n\n| test | data sets compared | largest relative difference of statistic and p |\n|---|---|---|\n"
+        "# {count} random data sets with ties: the library and {peer}\n\nBy `MIMIQUE_AGREEMENT={count} cargo test --release -p mimique-stats --test it agreement`.\n\n| test | data sets compared | largest relative difference of statistic and p |\n|---|---|---|\n"
     );
     for (test, compared, difference) in found.iter().filter(|(_, compared, _)| *compared > 0) {
         let _ = writeln!(text, "| {test} | {compared} | {difference:.1e} |");

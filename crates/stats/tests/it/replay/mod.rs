@@ -7,9 +7,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
+use self::samples::{Replay, special, told};
 use mimique_stats::{Arguments, Outcome, PROCEDURES, Procedure, Sample, Table};
 use mimique_test_support::Random;
-use samples::{Replay, special, told};
 
 /// Data sets per test.
 const SETS: usize = 6;
