@@ -1,7 +1,5 @@
 //! Conditions between participants: who is shown what, and what every row says of it.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_study::{
@@ -9,7 +7,8 @@ use mimique_study::{
 };
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use support::small::{Limits, keeps_to, small_file};
+
+use crate::support::small::{Limits, keeps_to, small_file};
 
 const CLIPS: [(&str, u8); 6] =
     [("joy", 1), ("joy", 2), ("fear", 1), ("fear", 2), ("anger", 1), ("anger", 2)];

@@ -2,11 +2,9 @@
 //! could not be replayed. `MIMIQUE_UPDATE_GOLDEN=1` writes them anew; look at the difference before
 //! you keep it. `tests/browser/order_bits.test.mjs` draws the same in WebAssembly.
 
-mod support;
-
 use std::collections::BTreeSet;
 
-use support::golden::{NAMES, lines};
+use crate::support::golden::{NAMES, lines};
 
 fn folder() -> String {
     format!("{}/tests/golden", env!("CARGO_MANIFEST_DIR"))

@@ -1,9 +1,8 @@
 //! The check: studies of the repository are clean, each kind of mistake is found and named.
 
-mod support;
-
 use mimique_study::{Issue, Problem, Report, Severity, check, json_schema};
-use support::{study_folder, study_text};
+
+use crate::support::{study_folder, study_text};
 
 fn everything_is_there(_: &str) -> Result<(), Problem> {
     Ok(())

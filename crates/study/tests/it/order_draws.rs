@@ -1,13 +1,12 @@
 //! Orders: never against a constraint, uniform where the design says random.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_study::{Draw, OrderedItem, Study, order, parse};
 use proptest::prelude::*;
-use support::small::{Limits, Numbers, has_an_order};
-use support::study_text;
+
+use crate::support::small::{Limits, Numbers, has_an_order};
+use crate::support::study_text;
 
 /// The clips in the order of a participant.
 fn clips(study: &Study, hash: &str, participant: u64) -> Vec<String> {

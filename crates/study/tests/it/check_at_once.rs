@@ -1,10 +1,9 @@
 //! Every problem at once: damage in one place hides nothing elsewhere, and makes nothing up.
 
-mod support;
-
 use mimique_study::{Issue, check, parse};
 use serde_json::{Value, json};
-use support::study_text;
+
+use crate::support::study_text;
 
 /// Code and place of each problem.
 fn found(file: &Value) -> Vec<(String, &'static str)> {

@@ -1,4 +1,4 @@
-//! The orders that are kept in `tests/golden`: how each is drawn, natively (`tests/golden_orders.rs`) and
+//! The orders that are kept in `tests/golden`: how each is drawn, natively (`tests/it/golden_orders.rs`) and
 //! in the browser's module (`web/app/examples/golden_orders.rs`, run by
 //! `tests/browser/order_bits.test.mjs`). Needs `study_text` and `small` beside it.
 

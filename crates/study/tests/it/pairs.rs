@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 /// Two segments by three methods; `blocks` show them, and ask for a rating and a choice.
 fn study(blocks: Value) -> Study {
     let mut study =
-        mimique_study::parse(include_str!("../../../study-config/study2b.json")).unwrap();
+        mimique_study::parse(include_str!("../../../../study-config/study2b.json")).unwrap();
     let choice = json!({ "id": "nearer", "type": "comparison", "prompt": "Which is nearer?" });
     study["questions"].as_array_mut().unwrap().push(choice);
     study["components"] = blocks;

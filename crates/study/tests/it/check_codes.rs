@@ -1,12 +1,11 @@
 //! Every kind of problem that the check can report stands in an expected report of
 //! `study-config/invalid`.
 
-mod support;
-
 use std::collections::BTreeSet;
 
 use mimique_study::Problem;
-use support::study_folder;
+
+use crate::support::study_folder;
 
 /// Codes that no text of a study file can bring about; `upload` is of the archive around it,
 /// `smoothing-advised`, `clips-unlike` and `not-prepared` of the captures and clips that it names.

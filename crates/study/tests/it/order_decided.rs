@@ -1,13 +1,12 @@
 //! Small designs, decided by trying every order: what the check lets pass has an order for everybody,
 //! and what it refuses has none.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_study::check;
 use serde_json::{Value, json};
-use support::small::{Limits, Numbers, clips, has_an_order, keeps_to, small_file};
+
+use crate::support::small::{Limits, Numbers, clips, has_an_order, keeps_to, small_file};
 
 /// What a drawn design looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,12 +1,11 @@
 //! Squares and samples of one study: balanced against each other, and never without an order.
 
-mod support;
-
 use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_study::{Draw, Issue, Study, check, order};
 use serde_json::{Value, json};
-use support::small::{Numbers, clips, small_file};
+
+use crate::support::small::{Numbers, clips, small_file};
 
 const FOUR: [(&str, u8); 4] = [("joy", 1), ("joy", 2), ("fear", 1), ("fear", 2)];
 const FIRST: [&str; 3] = ["joy1.m0", "joy2.m0", "fear1.m0"];

@@ -1,5 +1,4 @@
 //! The studies of `study-config`, and small ones.
-#![allow(dead_code, unused_imports)]
 
 pub mod golden;
 pub mod small;
