@@ -1,15 +1,14 @@
 //! Conditions between participants: what every row says of them.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::rows::{SessionRecord, tidy, wide};
 use mimique_study::Study;
 use mimique_study::columns::is_reserved_column;
 use serde_json::{Value, json};
-use support::small::small_file;
-use support::{Page, first_answer};
+
+use crate::support::small::small_file;
+use crate::support::{Page, first_answer};
 
 const CLIPS: [(&str, u8); 6] =
     [("joy", 1), ("joy", 2), ("fear", 1), ("fear", 2), ("anger", 1), ("anger", 2)];

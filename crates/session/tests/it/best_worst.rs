@@ -1,14 +1,13 @@
 //! Best-worst scaling from the page to the export: what is shown, what is refused, the two columns.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Input, QuestionKindView, View};
 use mimique_session::rows::{SessionRecord, tidy, wide};
 use mimique_study::{check, parse};
 use serde_json::{Value, json};
-use support::{Page, first_answer, study_text};
+
+use crate::support::{Page, first_answer, study_text};
 
 /// The demonstration study, which asks for the best and the worst feature before its trials.
 fn study() -> String {

@@ -1,7 +1,5 @@
 //! A study that measures faces: the consent of its own, plays with tracks, the rows.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Input, View};
@@ -9,7 +7,8 @@ use mimique_session::rows::{SessionRecord, tidy};
 use mimique_session::{Admission, Record};
 use mimique_study::{Answers, TRACKED_SHAPES};
 use serde_json::{Value, json};
-use support::{Page, small};
+
+use crate::support::{self, Page, small};
 
 fn text() -> String {
     let sequence = json!({ "order": "fixed", "components": ["faces"] });

@@ -1,13 +1,12 @@
 //! How a session stands follows from its events alone: with a plan or without, whatever comes.
 
-mod support;
-
 use mimique_session::flow::{Plan, State};
 use mimique_session::wire::Event;
 use mimique_session::{Record, Standing};
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use support::{Page, started, study_text};
+
+use crate::support::{Page, started, study_text};
 
 /// Every event of somebody who completes the study, and events that need not fit anywhere.
 fn bodies() -> Vec<Value> {

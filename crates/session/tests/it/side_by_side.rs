@@ -1,7 +1,5 @@
 //! Two clips in step: who stands beside whom, on which side, and what the export says of it.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{
@@ -10,7 +8,8 @@ use mimique_session::flow::{
 use mimique_session::rows::{SessionRecord, Table, tidy, wide};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use support::{Page, failure, first_answer, study_text};
+
+use crate::support::{Page, failure, first_answer, study_text};
 
 /// Study 2b with the companion's side drawn, and a comparison after each pair.
 fn compared() -> String {

@@ -1,15 +1,14 @@
 //! A panel: everything is seen before anything is rated, each clip alone as often as replays are left; a row for each
 //! clip in both exports.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Effect, Input, Phase, TrialView, View, update};
 use mimique_session::rows::{SessionRecord, Table, tidy, wide};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use support::{Page, first_answer, study_text, whole_play};
+
+use crate::support::{Page, first_answer, study_text, whole_play};
 
 fn text() -> String {
     let mut study = mimique_study::parse(&study_text("panel.json")).unwrap();

@@ -1,11 +1,10 @@
 //! The flow, through the whole demo study.
 
-mod support;
-
 use mimique_session::flow::{Effect, Input, Phase, Plan, State, View, update};
 use mimique_session::{Record, Standing};
 use serde_json::json;
-use support::{Page, client, failure, first_answer, started, study_text, whole_play};
+
+use crate::support::{self, Page, client, failure, first_answer, started, study_text, whole_play};
 
 #[test]
 fn demo_goes_from_consent_to_the_completion_code() {

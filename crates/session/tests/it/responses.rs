@@ -1,7 +1,5 @@
 //! What was clicked is what is exported.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Input, View};
@@ -10,7 +8,8 @@ use mimique_session::wire::SessionStarted;
 use mimique_study::ClipSource;
 use mimique_study::{Study, parse};
 use serde_json::{Value, json};
-use support::{Page, failed_checks, first_answer, status, study_text};
+
+use crate::support::{Page, failed_checks, first_answer, status, study_text};
 
 fn record(page: &Page) -> SessionRecord<'_> {
     SessionRecord { started: &page.plan.started, events: &page.stored }

@@ -1,11 +1,10 @@
 //! What a scale shows.
 
-mod support;
-
 use mimique_session::flow::{QuestionKindView, View};
 use mimique_study::parse;
 use serde_json::{Value, json};
-use support::{Page, study_text};
+
+use crate::support::{self, Page, study_text};
 
 /// The points of the scale that opens a study.
 fn points(scale: Value) -> Vec<(i64, String)> {

@@ -1,10 +1,9 @@
 //! Which events a session's plan admits: all that a page sends, and nothing that no page could send.
 
-mod support;
-
 use mimique_session::{Admission, Misfit, Record, Standing};
 use serde_json::{Value, json};
-use support::{Page, first_answer, study_text};
+
+use crate::support::{Page, first_answer, study_text};
 
 const STUDIES: [&str; 5] =
     ["demo.json", "template.json", "study1.json", "study2b.json", "animface.json"];

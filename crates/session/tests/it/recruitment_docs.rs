@@ -1,13 +1,12 @@
 //! The examples of `docs/guide/recruitment.md` are study files that the check has nothing to say against.
 
-mod support;
-
 use mimique_session::Standing::{
     ChecksFailed, Completed, Declined, DeviceRefused, InProgress, ScreenedOut, Withdrawn,
 };
 use mimique_study::{Study, check, parse};
 use serde_json::{Value, json};
-use support::study_text;
+
+use crate::support::study_text;
 
 /// The blocks of JSON of a page of the documentation: a section of the study file each.
 fn sections(page: &str) -> Vec<Value> {

@@ -1,7 +1,5 @@
 //! A study with sound: the sound check, a play whose sound was not played, the rows.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Input, Phase, View};
@@ -10,7 +8,8 @@ use mimique_session::wire::SessionStarted;
 use mimique_session::{Admission, SOUND_HEARD, Standing};
 use mimique_study::Answers;
 use serde_json::{Value, json};
-use support::{Page, small};
+
+use crate::support::{self, Page, small};
 
 /// Two performances with sound, one played later than the face; one clip a performance.
 fn text(hearing: &str) -> String {

@@ -1,11 +1,10 @@
 //! What a participant saw, made of the stored events: every page in order, its answers, the plays of its clips.
 
-mod support;
-
 use mimique_session::flow::{BESIDE_CANVAS, KeptFrames, OWN_CANVAS, Plays, Seen, SeenPage, View};
 use mimique_session::{EventKind, PlayLog};
 use serde_json::Value;
-use support::{Page, first_answer, study_text};
+
+use crate::support::{Page, first_answer, study_text};
 
 fn seen(page: &Page, frames: KeptFrames) -> Vec<SeenPage> {
     let mut seen = Seen::new(&page.plan, frames);

@@ -1,7 +1,10 @@
 //! The studies of `study-config`, and a participant who goes through one.
-#![allow(dead_code, unused_imports)]
 
-#[path = "../../../study/tests/support/small.rs"]
+pub mod any_study;
+pub mod stepped;
+
+#[path = "../../../../study/tests/it/support/small.rs"]
+#[allow(dead_code, reason = "the tests of mimique-study use the rest")]
 pub mod small;
 
 use std::collections::BTreeMap;
@@ -12,7 +15,7 @@ use mimique_session::flow::{
 use mimique_session::wire::{Event, Receipt, SessionStarted};
 use mimique_session::{Client, PlayLog, Record, SOUND_HEARD, StageFailure};
 use mimique_study::{Display, Study, config_hash};
-pub use mimique_test_support::{study_folder, study_text};
+pub use mimique_test_support::study_text;
 use serde_json::{Value, json};
 
 /// A session of a study.

@@ -1,11 +1,8 @@
 //! Hostile study files: no panic on any input; what the fuzzer keeps is replayed.
 
-#[path = "support/any_study.rs"]
-mod any_study;
-
 use std::path::{Path, PathBuf};
 
-use any_study::check_anyhow;
+use crate::support::any_study::check_anyhow;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

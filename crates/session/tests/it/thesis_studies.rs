@@ -1,14 +1,13 @@
 //! The three studies of the thesis (Reverdy 2019, chapter 6): how many trials, of what, in which blocks, with
 //! which questions, for any participant and in both languages.
 
-mod support;
-
 use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_session::flow::{
     ChoiceView, Input, Plan, QuestionKindView, QuestionView, Step, StepKind, TrialStep, View,
 };
-use support::{Page, first_answer, started, study_text};
+
+use crate::support::{Page, first_answer, started, study_text};
 
 const PARTICIPANTS: u64 = 60;
 const EMOTIONS: [&str; 6] = ["anger", "disgust", "fear", "joy", "sadness", "surprise"];

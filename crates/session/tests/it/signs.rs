@@ -1,12 +1,11 @@
 //! Every prompt and every option can be signed: what a study names is checked, loaded before its page, and
 //! handed to the page where it belongs.
 
-mod support;
-
 use mimique_session::flow::{ChoiceView, Input, QuestionKindView, QuestionView, Step, View};
 use mimique_study::{Problem, Study, check, parse};
 use serde_json::{Value, json};
-use support::{Page, first_answer, study_text};
+
+use crate::support::{Page, first_answer, study_text};
 
 fn text(words: &str) -> Value {
     json!({ "en": words, "fr": format!("{words} (fr)") })

@@ -1,9 +1,6 @@
 //! Adaptive blocks from the page to the export: levels follow the answers, a reload goes on at the same level, and
 //! what was recorded is replayed from seed and answers alone.
 
-#[path = "support/stepped.rs"]
-mod stepped;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Input, State};
@@ -12,7 +9,8 @@ use mimique_session::wire::{Event, SessionStarted};
 use mimique_session::{Client, EventKind, PlayLog};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use stepped::Page;
+
+use crate::support::stepped::{self, Page};
 
 const SEED: u64 = 20_261_125;
 

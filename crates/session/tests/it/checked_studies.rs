@@ -1,12 +1,12 @@
 //! Whatever is changed in a good study, what its check lets pass can be run.
 
-mod support;
-
 use mimique_session::flow::Plan;
 use mimique_session::wire::SessionStarted;
 use mimique_study::{Study, check, parse};
 use proptest::prelude::*;
 use serde_json::{Value, json};
+
+use crate::support;
 
 /// Pointers of every value of a file.
 fn pointers(value: &Value, here: &str, all: &mut Vec<String>) {

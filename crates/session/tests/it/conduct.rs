@@ -1,13 +1,12 @@
 //! How a session is conducted: device gate, calibration, time limits, practice, screening, attention
 //! checks, full screen; each through the whole flow and into the export.
 
-mod support;
-
 use mimique_session::flow::{Effect, Input, Phase, QuestionKindView, View, update};
 use mimique_session::rows::{SessionRecord, Table, tidy};
 use mimique_session::{PlayLog, Standing};
 use serde_json::{Value, json};
-use support::{Page, display, first_answer, status, study_text, whole_play};
+
+use crate::support::{self, Page, display, first_answer, status, study_text, whole_play};
 
 /// The demo with these sections more (or others).
 fn demo_with(sections: Value) -> String {

@@ -1,13 +1,12 @@
 //! What is read from the text of a stored event is what is read from its JSON, and a record that is made of one
 //! event after the other is that of all of them.
 
-mod support;
-
 use mimique_session::rows::{SessionRecord, TidyForm, WideForm, tidy, wide};
 use mimique_session::{EventKind, Record};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use support::{Page, study_text};
+
+use crate::support::{Page, study_text};
 
 const STUDIES: [&str; 4] = ["demo.json", "template.json", "study1.json", "study2b.json"];
 

@@ -1,9 +1,6 @@
 //! Blocks of reverse correlation from the page to the export: every trial shows a face of its own, which seed and
 //! participant give again.
 
-#[path = "support/stepped.rs"]
-mod stepped;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::Input;
@@ -14,7 +11,8 @@ use mimique_study::{
     ClipSource, Draw, ReverseCorrelationComponent, ShownCourse, Study, UnitShapes,
 };
 use serde_json::{Value, json};
-use stepped::Page;
+
+use crate::support::stepped::{self, Page};
 
 const SEED: u64 = 20_261_126;
 const TRIALS: usize = 5;

@@ -1,7 +1,5 @@
 //! Questions that keys answer while the clip plays: the first press counts, on the clock of the frames.
 
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_session::flow::{Input, Phase, TrialView, View, update};
@@ -9,7 +7,8 @@ use mimique_session::rows::{SessionRecord, tidy};
 use mimique_session::{PlayLog, flow::State};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use support::{Page, first_answer, study_text, whole_play};
+
+use crate::support::{Page, first_answer, study_text, whole_play};
 
 /// The speeded example, with what a test changes of its question.
 fn text(change: impl FnOnce(&mut Value)) -> String {

@@ -1,5 +1,5 @@
 //! What holds of any bytes as a study file: the check answers, and what it lets pass can be run.
-//! Shared by `tests/hostile.rs` and the fuzz target `study_file`.
+//! Shared by `tests/it/hostile.rs` and the fuzz target `study_file`.
 
 use mimique_session::Client;
 use mimique_session::flow::{Input, Plan, State, update, view};
