@@ -1,18 +1,14 @@
 //! Answers while the clip plays, from simulated people to the report: presses with their times, lines with their courses.
 
-#[path = "support/followed.rs"]
-mod followed;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use std::collections::{BTreeMap, HashMap};
 
-use followed::{followed, followed_with, followers, speeded};
 use mimique_analysis::{Language, Parameters, ReportOptions, Simulation, analyze_with};
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::followed::{followed, followed_with, followers, speeded};
+use crate::support::simulated::simulated_export;
 
 /// The preview to which figures lead.
 const PREVIEW: &str = "http://lab.example/preview/speeded";

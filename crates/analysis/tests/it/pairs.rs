@@ -1,9 +1,6 @@
 //! Answers about two clips at once are told of neither; how often each was chosen is counted, and so are
 //! the best and the worst.
 
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use std::collections::BTreeMap;
 
 use mimique_analysis::{
@@ -12,11 +9,12 @@ use mimique_analysis::{
 use mimique_stats::Table;
 use mimique_study::{Problem, Study};
 use serde_json::{Value, json};
-use simulated::simulated_export;
+
+use crate::support::simulated::simulated_export;
 
 /// Study 2b, in which each solved clip stands beside the performance itself.
 fn beside_the_performance() -> Value {
-    mimique_study::parse(include_str!("../../../study-config/study2b.json")).unwrap()
+    mimique_study::parse(include_str!("../../../../study-config/study2b.json")).unwrap()
 }
 
 /// The same clips, the two methods beside each other; people choose one and rate "the" face.

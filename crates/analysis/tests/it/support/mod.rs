@@ -1,5 +1,14 @@
 //! A study's export with simulated raters, written as `mimique export --format csv` writes it.
 
+pub mod confident;
+pub mod equivalence;
+pub mod followed;
+pub mod planted;
+pub mod preregistered;
+pub mod rerun;
+pub mod results;
+pub mod simulated;
+
 use mimique_study::columns::{ASSIGNED_CONDITION, FIXED_COLUMNS};
 use mimique_study::{Question, QuestionKind, Study};
 use mimique_test_support::Random;
@@ -141,7 +150,7 @@ fn trait_answer(question: &Question, random: &mut Random) -> String {
 
 /// A study of one method with three values of its parameter, 18 clips each, that lays out its tables.
 pub fn parameter_study() -> Study {
-    Study::from_text(include_str!("../fixtures/parameter-study.json")).unwrap()
+    Study::from_text(include_str!("../../fixtures/parameter-study.json")).unwrap()
 }
 
 /// The demonstration in three conditions, which its hypotheses and tables compare.

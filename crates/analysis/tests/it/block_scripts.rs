@@ -1,27 +1,17 @@
 //! `analysis.R` and `analysis.py` of blocks that choose what is shown, and of courses over time: other programs find the
 //! numbers again, and tell those that are changed.
 
-#[path = "support/followed.rs"]
-mod followed;
-#[path = "support/rerun.rs"]
-#[expect(dead_code, reason = "other tests run unchanged scripts")]
-mod rerun;
-#[path = "support/results.rs"]
-#[expect(dead_code, reason = "other tests read the results")]
-mod results;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use std::process::Command;
 
-use followed::{followed, followers};
 use mimique_analysis::{Language, Parameters, Report, Simulation, analyze};
 use mimique_stats::Table;
 use mimique_study::Study;
-use rerun::{compare, write};
-use results::careful;
 use serde_json::{Value, json};
-use simulated::simulated_export;
+
+use crate::support::followed::{followed, followers};
+use crate::support::rerun::{compare, write};
+use crate::support::results::careful;
+use crate::support::simulated::simulated_export;
 
 /// A report, and the first number of each of its families.
 struct Case {
@@ -32,9 +22,9 @@ struct Case {
 
 /// Small studies: fewer trials and people than the studies have that they are made of.
 fn cases() -> Vec<Case> {
-    let adaptive = include_str!("../../../study-config/jnd-alpha.json");
-    let scaling = include_str!("../../../study-config/scale-alpha.json");
-    let faces = include_str!("../../../study-config/reverse-correlation.json");
+    let adaptive = include_str!("../../../../study-config/jnd-alpha.json");
+    let scaling = include_str!("../../../../study-config/scale-alpha.json");
+    let faces = include_str!("../../../../study-config/reverse-correlation.json");
     let of = |text: &str, change: fn(&mut Value)| {
         let mut file = mimique_study::parse(text).unwrap();
         change(&mut file);

@@ -1,29 +1,19 @@
 //! ROC curves of a forced choice with a rating of confidence: planted answers give the areas that pairs of answers have
 //! when they are counted, and simulated people are surer where they are right.
 
-#[path = "support/confident.rs"]
-mod confident;
-#[path = "support/planted.rs"]
-mod planted;
-#[path = "support/results.rs"]
-mod results;
-#[path = "support/simulated.rs"]
-mod simulated;
-#[expect(dead_code, reason = "other tests take the other studies")]
-mod support;
-
 use std::collections::HashMap;
 
-use confident::confident;
 use mimique_analysis::{Language, Parameters, Simulation};
 use mimique_stats::{Table, t_quantile_upper};
 use mimique_study::{KindOfQuestion as _, Study};
 use mimique_test_support::Random;
-use planted::{answered, export_of_passes};
-use results::{careful, report, text};
 use serde_json::Value;
-use simulated::simulated_export;
-use support::demo_study;
+
+use crate::support::confident::confident;
+use crate::support::demo_study;
+use crate::support::planted::{answered, export_of_passes};
+use crate::support::results::{careful, report, text};
+use crate::support::simulated::simulated_export;
 
 fn study() -> Study {
     let mut study = confident(demo_study());

@@ -1,10 +1,5 @@
 //! Panels, from people who know the reference to report, screening, scripts, power and preregistration.
 
-#[path = "support/preregistered.rs"]
-mod preregistered;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -12,12 +7,13 @@ use std::process::Command;
 use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
 use mimique_stats::Table;
 use mimique_study::{PanelBlock, Study};
-use preregistered::preregistered;
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::preregistered::preregistered;
+use crate::support::simulated::simulated_export;
 
 fn study() -> Study {
-    let file = mimique_study::parse(include_str!("../../../study-config/panel.json")).unwrap();
+    let file = mimique_study::parse(include_str!("../../../../study-config/panel.json")).unwrap();
     Study::from_value(&file).unwrap()
 }
 

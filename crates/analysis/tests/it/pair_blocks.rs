@@ -1,21 +1,17 @@
 //! Blocks of pairs, from people with worths to report, power and preregistration.
 
-#[path = "support/preregistered.rs"]
-mod preregistered;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
 use mimique_stats::Table;
 use mimique_study::Study;
-use preregistered::preregistered;
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::preregistered::preregistered;
+use crate::support::simulated::simulated_export;
 
 const WORTHS: [(&str, f64); 4] = [("box", -0.6), ("ridge", -0.2), ("lsts", 0.2), ("recorded", 0.6)];
 
 fn study() -> Study {
-    let file = mimique_study::parse(include_str!("../../../study-config/pairs.json")).unwrap();
+    let file = mimique_study::parse(include_str!("../../../../study-config/pairs.json")).unwrap();
     Study::from_value(&file).unwrap()
 }
 

@@ -1,10 +1,6 @@
 //! The assigned condition as a factor of hypotheses and tables: one value a person, independent groups,
 //! said who is in which; and its power.
 
-#[path = "support/simulated.rs"]
-mod simulated;
-mod support;
-
 use std::collections::BTreeMap;
 
 use mimique_analysis::{
@@ -14,8 +10,11 @@ use mimique_analysis::{
 use mimique_stats::{Numbers, Table, mann_whitney};
 use mimique_study::{Study, config_hash};
 use serde_json::{Value, json};
-use simulated::simulated_export;
-use support::{Raters, condition_of, demo_study, export, parameter_study, study_in_conditions};
+
+use crate::support::simulated::simulated_export;
+use crate::support::{
+    Raters, condition_of, demo_study, export, parameter_study, study_in_conditions,
+};
 
 fn report(study: &Study, csv: &str) -> Report {
     analyze(&Table::parse(csv.as_bytes()).unwrap(), study, Language::English).unwrap()

@@ -1,21 +1,17 @@
 //! Blocks of reverse correlation: simulated people go through the study as a browser would, and the report finds the
 //! faces that they have in mind.
 
-#[path = "support/results.rs"]
-mod results;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use mimique_analysis::{FacePart, Language, Parameters, Simulation};
 use mimique_study::Study;
-use results::{careful, report, text};
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::results::{careful, report, text};
+use crate::support::simulated::simulated_export;
 
 const PEOPLE: u64 = 14;
 
 fn study() -> Study {
-    let file = include_str!("../../../study-config/reverse-correlation.json");
+    let file = include_str!("../../../../study-config/reverse-correlation.json");
     Study::from_value(&mimique_study::parse(file).unwrap()).unwrap()
 }
 

@@ -1,21 +1,17 @@
 //! Blocks of difference scaling: simulated people go through the study as a browser would, and the report finds the
 //! scale that they perceive.
 
-#[path = "support/results.rs"]
-mod results;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use mimique_analysis::{Language, Simulation};
 use mimique_study::Study;
-use results::{careful, report, text};
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::results::{careful, report, text};
+use crate::support::simulated::simulated_export;
 
 const PEOPLE: u64 = 30;
 
 fn study(change: impl FnOnce(&mut Value)) -> Study {
-    let file = include_str!("../../../study-config/scale-alpha.json");
+    let file = include_str!("../../../../study-config/scale-alpha.json");
     let mut value = mimique_study::parse(file).unwrap();
     change(&mut value);
     Study::from_value(&value).unwrap()

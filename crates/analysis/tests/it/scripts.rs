@@ -1,33 +1,19 @@
 //! `analysis.R` and `analysis.py` as a reader runs them: every number of the report once more, by other
 //! programs.
 
-#[path = "support/confident.rs"]
-mod confident;
-#[path = "support/followed.rs"]
-mod followed;
-#[path = "support/equivalence.rs"]
-mod hypothesis_of;
-#[path = "support/planted.rs"]
-#[expect(dead_code, reason = "other tests plant answers")]
-mod planted;
-#[path = "support/rerun.rs"]
-mod rerun;
-#[path = "support/simulated.rs"]
-mod simulated;
-mod support;
-
 use std::process::Command;
 
-use confident::confident;
-use followed::{followed, followers};
-use hypothesis_of::equivalence;
 use mimique_analysis::{Language, Report, Simulation, analyze};
 use mimique_stats::Table;
 use mimique_study::{CompositeScale, Study};
-use planted::export_of_passes;
-use rerun::{compare, numbers, run, write};
-use simulated::simulated_export;
-use support::{Raters, demo_study, export, parameter_study, study_in_conditions};
+
+use crate::support::confident::confident;
+use crate::support::equivalence::equivalence;
+use crate::support::followed::{followed, followers};
+use crate::support::planted::export_of_passes;
+use crate::support::rerun::{compare, numbers, run, write};
+use crate::support::simulated::simulated_export;
+use crate::support::{Raters, demo_study, export, parameter_study, study_in_conditions};
 
 fn reports() -> Vec<(&'static str, Report)> {
     let (mut demo, mut conditions) = (demo_study(), study_in_conditions());

@@ -1,12 +1,7 @@
 //! The report of a simulated study: complete, the same each time, and true to what was planted.
 
-#[path = "report/mimicry.rs"]
 mod mimicry;
-#[path = "support/simulated.rs"]
-mod simulated;
-#[path = "report/stimulus_measures.rs"]
 mod stimulus_measures;
-mod support;
 
 use std::collections::BTreeSet;
 
@@ -14,8 +9,9 @@ use mimique_analysis::{Language, Parameters, Simulation, analyze};
 use mimique_stats::Table;
 use mimique_study::{Hypothesis, Study};
 use serde_json::json;
-use simulated::simulated_export;
-use support::{Raters, demo_study, export};
+
+use crate::support::simulated::simulated_export;
+use crate::support::{self, Raters, demo_study, export};
 
 fn report(raters: &Raters, language: Language) -> mimique_analysis::Report {
     let study = demo_study();

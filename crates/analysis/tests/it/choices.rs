@@ -1,25 +1,21 @@
 //! Choices between two clips, from people with worths to the report: what is planted is found again, the words name
 //! what was computed, other programs find the same numbers.
 
-#[path = "support/preregistered.rs"]
-mod preregistered;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use std::path::Path;
 use std::process::Command;
 
 use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
 use mimique_stats::Table;
 use mimique_study::{Severity, Study};
-use preregistered::preregistered;
 use serde_json::{Value, json};
-use simulated::simulated_export;
+
+use crate::support::preregistered::preregistered;
+use crate::support::simulated::simulated_export;
 
 /// Study 2b as pairs of its three methods, each two beside each other: one block for each.
 fn three_methods() -> Value {
     let mut file =
-        mimique_study::parse(include_str!("../../../study-config/study2b.json")).unwrap();
+        mimique_study::parse(include_str!("../../../../study-config/study2b.json")).unwrap();
     file["questions"].as_array_mut().unwrap().push(json!({
         "id": "nearer", "type": "comparison", "allowSame": true,
         "prompt": { "en": "Which moves more naturally?", "fr": "Lequel bouge plus naturellement ?" },

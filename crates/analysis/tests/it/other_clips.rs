@@ -1,21 +1,15 @@
 //! Whether what is found holds for other people and other clips: min F' and the mixed model beside each hypothesis that
 //! compares ratings within people, and the mixed model as what decides.
 
-#[path = "support/planted.rs"]
-mod planted;
-#[path = "support/preregistered.rs"]
-mod preregistered;
-#[expect(dead_code, reason = "other tests take the other studies")]
-mod support;
-
 use mimique_analysis::{Language, Parameters, PowerOptions, analyze, power};
 use mimique_stats::Table;
 use mimique_study::{Generalise, Severity, Study};
 use mimique_test_support::Random;
-use planted::{answered, export_of_passes};
-use preregistered::preregistered;
 use serde_json::{Value, json};
-use support::{Raters, demo_study, export};
+
+use crate::support::planted::{answered, export_of_passes};
+use crate::support::preregistered::preregistered;
+use crate::support::{Raters, demo_study, export};
 
 /// The hypotheses of a study's results, by a few raters.
 fn hypotheses(study: &Study, people: usize, language: Language) -> Vec<Value> {

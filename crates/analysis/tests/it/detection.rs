@@ -1,17 +1,13 @@
 //! d' and criterion of a forced choice in the report: means over people where everybody saw enough, else of all answers
 //! together.
 
-#[path = "support/planted.rs"]
-mod planted;
-#[expect(dead_code, reason = "other tests take the other studies")]
-mod support;
-
 use mimique_analysis::{Language, Report, analyze};
 use mimique_stats::Table;
 use mimique_test_support::Random;
-use planted::{answered, export_of_passes};
 use serde_json::Value;
-use support::demo_study;
+
+use crate::support::demo_study;
+use crate::support::planted::{answered, export_of_passes};
 
 /// The report of eleven people each of whom met every clip `times` times.
 fn report(times: usize, language: Language) -> Report {

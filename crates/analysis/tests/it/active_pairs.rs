@@ -1,28 +1,22 @@
 //! Active schedules of pairs: simulated people go through them, worths come back, and pairs whose answer is known are
 //! asked about less often.
 
-#[path = "support/preregistered.rs"]
-mod preregistered;
-#[path = "support/results.rs"]
-mod results;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use std::collections::BTreeMap;
 
 use mimique_analysis::{Language, Parameters, PowerOptions, Simulation, power};
 use mimique_study::Study;
-use preregistered::preregistered;
-use results::{careful, report, text};
 use serde_json::{Value, json};
-use simulated::simulated_export;
+
+use crate::support::preregistered::preregistered;
+use crate::support::results::{careful, report, text};
+use crate::support::simulated::simulated_export;
 
 const PEOPLE: u64 = 30;
 const PAIRS: usize = 24;
 const LEVELS: [&str; 5] = ["box", "lsts", "recorded", "ridge", "greedy"];
 
 fn study() -> Study {
-    let file = include_str!("../../../study-config/pairs.json");
+    let file = include_str!("../../../../study-config/pairs.json");
     let mut value = mimique_study::parse(file).unwrap();
     let methods: serde_json::Map<String, Value> =
         LEVELS.map(|name| (name.to_owned(), json!({ "method": name }))).into_iter().collect();

@@ -1,15 +1,13 @@
 //! Agreement about clips and the consistency of scales in the report: on planted answers, with gaps, of pages and of
 //! trials, in both languages.
 
-#[expect(dead_code, reason = "other tests take the other studies")]
-mod support;
-
 use mimique_analysis::{Language, analyze};
 use mimique_stats::Table;
 use mimique_study::{CompositeScale, Study};
 use mimique_test_support::Random;
 use serde_json::{Value, json};
-use support::{Raters, demo_study, export};
+
+use crate::support::{Raters, demo_study, export};
 
 fn results(csv: &str, study: &Study, language: Language) -> (Value, String) {
     let report = analyze(&Table::parse(csv.as_bytes()).unwrap(), study, language).unwrap();

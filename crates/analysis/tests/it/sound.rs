@@ -1,14 +1,12 @@
 //! A study with sound: simulated people hear it, and the rules about sound leave out trials and people.
 
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use mimique_analysis::{Language, Parameters, Simulation, analyze};
 use mimique_stats::Table;
 use mimique_study::{Study, config_hash, parse};
 use mimique_test_support::study_text;
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::simulated::simulated_export;
 
 /// The flow of the report.
 fn flow(csv: &str, study: &Study) -> Value {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 /// The study of speeded answers with a change.
 pub fn speeded(change: impl FnOnce(&mut Value)) -> Study {
-    let text = include_str!("../../../../study-config/speeded.json");
+    let text = include_str!("../../../../../study-config/speeded.json");
     let mut file = mimique_study::parse(text).unwrap();
     change(&mut file);
     Study::from_value(&file).unwrap()

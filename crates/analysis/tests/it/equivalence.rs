@@ -1,20 +1,15 @@
 //! Hypotheses of equivalence from the study file to the report: verdicts on planted differences, the sentence, the
 //! table and the figure, power at a true difference of 0, and the preregistration.
 
-#[expect(dead_code, reason = "other tests take the other studies")]
-mod support;
-
-#[path = "support/equivalence.rs"]
-mod hypothesis_of;
-
-use hypothesis_of::equivalence;
 use mimique_analysis::{
     Language, Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
 };
 use mimique_stats::{EquivalenceOptions, Numbers, Table, equivalence_of_pairs};
 use mimique_study::Study;
 use serde_json::Value;
-use support::{Raters, demo_study, export, study_in_conditions};
+
+use crate::support::equivalence::equivalence;
+use crate::support::{Raters, demo_study, export, study_in_conditions};
 
 const METHODS: [&str; 2] = ["lsts", "box"];
 

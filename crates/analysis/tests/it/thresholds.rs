@@ -1,21 +1,17 @@
 //! Thresholds of adaptive blocks: planted ones are found again, those outside the levels are told as such, and levels
 //! that answers do not give are an error that is named.
 
-#[path = "support/results.rs"]
-mod results;
-#[path = "support/simulated.rs"]
-mod simulated;
-
 use mimique_analysis::{Language, Simulation};
 use mimique_study::Study;
-use results::{careful, report, text};
 use serde_json::Value;
-use simulated::simulated_export;
+
+use crate::support::results::{careful, report, text};
+use crate::support::simulated::simulated_export;
 
 const PEOPLE: u64 = 8;
 
 fn study() -> Study {
-    let file = include_str!("../../../study-config/jnd-alpha.json");
+    let file = include_str!("../../../../study-config/jnd-alpha.json");
     Study::from_value(&mimique_study::parse(file).unwrap()).unwrap()
 }
 
@@ -51,7 +47,7 @@ fn planted_thresholds_are_found_again() {
 
 /// The block asks whether the clips differ.
 fn yes_or_no() -> Study {
-    let file = include_str!("../../../study-config/jnd-alpha.json");
+    let file = include_str!("../../../../study-config/jnd-alpha.json");
     let mut value = mimique_study::parse(file).unwrap();
     value["questions"] = serde_json::json!([{
         "id": "differ", "type": "singleChoice",
@@ -155,7 +151,7 @@ fn choices_of_an_adaptive_block_are_not_counted_by_level() {
 
 #[test]
 fn thresholds_of_levels_that_fall_are_found_again() {
-    let file = include_str!("../../../study-config/jnd-alpha.json");
+    let file = include_str!("../../../../study-config/jnd-alpha.json");
     let mut value = mimique_study::parse(file).unwrap();
     let block = &mut value["components"]["limit"];
     block["vary"] =
