@@ -14,10 +14,7 @@ use mimique_avatar::pack::{encode_pack, open_plain};
 use mimique_avatar_files::read_avatar_bytes;
 use serde_json::{Value, json};
 
-#[path = "support/any_avatar.rs"]
-mod any_avatar;
-
-use any_avatar::{Kind, consume};
+use crate::support::any_avatar::{Kind, consume};
 
 /// Counts what is allocated.
 struct Counted;
@@ -388,7 +385,7 @@ impl Seeds {
         let tar = tar_of(&bank());
         let zip = zip_of(&bank());
         // Packed by XZ Utils; its poses are those of the others.
-        let tar_xz = include_bytes!("../../../fuzz/corpus/avatar_file/seed-tar-xz").to_vec();
+        let tar_xz = include_bytes!("../../../../fuzz/corpus/avatar_file/seed-tar-xz").to_vec();
         for seed in [&tar, &zip, &tar_xz] {
             let read = read_avatar_bytes(seed.clone(), "seed", None, None).unwrap();
             assert_eq!(read.locked, ["AU12"]);

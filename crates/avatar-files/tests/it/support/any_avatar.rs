@@ -7,7 +7,7 @@ use mimique_avatar_files::{
 };
 
 /// Poses with settings of their own, to which other settings are applied.
-const BANK: &[u8] = include_bytes!("../../../../fuzz/corpus/avatar_file/seed-tar");
+const BANK: &[u8] = include_bytes!("../../../../../fuzz/corpus/avatar_file/seed-tar");
 
 /// A kind of file and how it is read.
 #[derive(Clone, Copy, PartialEq)]
