@@ -1,8 +1,5 @@
 //! A study file's stimuli to packs: built-in ones and real ones, reuse, refusals.
 
-#[path = "support/study.rs"]
-mod study_of_stimuli;
-
 use std::path::{Path, PathBuf};
 
 use mimique_avatar::pack::decode_pack;
@@ -12,7 +9,8 @@ use mimique_stimulus::{Places, Prepared, prepare};
 use mimique_study::Study;
 use mimique_test_support::real_data;
 use serde_json::{Value, json};
-use study_of_stimuli::study_of;
+
+use crate::support::study::study_of;
 
 fn repository() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))

@@ -1,13 +1,12 @@
 //! ELAN documents: what ELAN 6 writes is read, tiers are written, everything else stays.
 
-#[path = "support/any_eaf.rs"]
-mod any_eaf;
-
 use mimique_stimulus::{EafAnnotation, EafDocument, EafSegments, TakeSegment};
+
+use crate::support::any_eaf;
 
 /// As ELAN 6.7 lays a document out: two tiers, one of them symbolic, a slot without a time, a
 /// controlled vocabulary, a comment, entities.
-const DOCUMENT: &str = include_str!("../../../fuzz/corpus/eaf/seed-elan");
+const DOCUMENT: &str = include_str!("../../../../fuzz/corpus/eaf/seed-elan");
 
 fn annotation(start_ms: u64, end_ms: u64, value: &str) -> EafAnnotation {
     EafAnnotation { start_ms, end_ms, value: value.to_owned() }

@@ -1,8 +1,5 @@
 //! A gaze that is given is shown by every method and by recorded weights, whatever the markers do.
 
-#[path = "support/study.rs"]
-mod study_of_stimuli;
-
 use mimique_actor::{
     Clip, Density, Emotion, HeadSpec, SyntheticTake, build_head, marker_sites, synthetic_take,
 };
@@ -16,7 +13,8 @@ use mimique_stimulus::{
     TakeOptions, built_in_capture, built_in_map, prepare, solve_take,
 };
 use serde_json::json;
-use study_of_stimuli::study_of;
+
+use crate::support::study::study_of;
 
 /// A built-in actor's joy on the actor's own head.
 struct Scene {

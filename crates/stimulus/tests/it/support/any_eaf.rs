@@ -1,4 +1,4 @@
-//! What holds of any bytes as an ELAN document. Shared by `tests/elan.rs` and the fuzz target `eaf`.
+//! What holds of any bytes as an ELAN document. Shared by `tests/it/elan.rs` and the fuzz target `eaf`.
 
 use mimique_stimulus::{EafAnnotation, EafDocument};
 

@@ -3,7 +3,7 @@
 
 use mimique_stimulus::{EafDocument, EafTier};
 
-const DOCUMENT: &str = include_str!("../../../fuzz/corpus/eaf/seed-elan");
+const DOCUMENT: &str = include_str!("../../../../fuzz/corpus/eaf/seed-elan");
 
 /// What is done, what is replaced, by what.
 type Replacement = (&'static str, &'static str, &'static str);

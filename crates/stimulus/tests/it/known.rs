@@ -1,11 +1,9 @@
 //! What was prepared before is known by the hash of what it was made of.
 
-#[path = "support/study.rs"]
-mod study_of_stimuli;
-
 use mimique_stimulus::{Places, prepare};
 use serde_json::{Value, json};
-use study_of_stimuli::study_of;
+
+use crate::support::study::study_of;
 
 #[test]
 fn what_was_prepared_is_known_by_hash() {

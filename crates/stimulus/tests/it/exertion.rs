@@ -1,8 +1,5 @@
 //! Captures of a study that are exertions: computed, repeatable, refused at their place.
 
-#[path = "support/study.rs"]
-mod study_of_stimuli;
-
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -10,7 +7,8 @@ use mimique_clip::solve_packs;
 use mimique_stimulus::{Places, Prepared, built_in_bvh, exertion_drawing, prepare};
 use mimique_study::Study;
 use serde_json::{Value, json};
-use study_of_stimuli::study_of;
+
+use crate::support::study::study_of;
 
 /// A study of one exertion, cut at frames.
 fn study(exertion: &Value, [first, end]: [usize; 2]) -> Study {

@@ -1,14 +1,12 @@
 //! The head's own motion: what head markers tell is what the actor did, and every method shows the same.
 
-#[path = "support/study.rs"]
-mod study_of_stimuli;
-
 use mimique_avatar::pack::decode_pack;
 use mimique_avatar::{HEAD_POSE_SHAPES, HeadAngles};
 use mimique_clip::{SolvedTake, solve_packs};
 use mimique_stimulus::{Places, Prepared, prepare};
 use serde_json::{Value, json};
-use study_of_stimuli::study_of;
+
+use crate::support::study::study_of;
 
 /// The clips of an actor's sadness by three methods and as it was performed, at 60 frames per second.
 fn prepared(capture: Value, packs: &std::path::Path) -> Prepared {
