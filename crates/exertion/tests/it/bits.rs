@@ -3,13 +3,12 @@
 //! The second needs node and the module built by `cargo xtask web --only exertion_bits` (in
 //! `target/web-modules`).
 
-#[path = "support/bits.rs"]
-mod bits;
-
 use std::path::PathBuf;
 use std::process::Command;
 
 use mimique_test_support::repository;
+
+use crate::support::bits;
 
 fn kept() -> PathBuf {
     repository().join("crates/exertion/tests/golden/bits.txt")
