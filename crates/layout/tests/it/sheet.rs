@@ -1,11 +1,10 @@
 //! The placement sheet: its own size, a bar to measure, every marker with its number.
 
-mod support;
-
 use mimique_layout::{
     Choice, Face, Layout, Method, Sheet, SheetOptions, Side, choose_heads, face_height, face_width,
 };
-use support::Ground;
+
+use crate::support::{self, Ground};
 
 fn layout(face: &Face<'_>) -> Layout {
     let ground = Ground::of(face);

@@ -1,14 +1,13 @@
 //! Rehearsals, curves and checks: what they say is what the solver does.
 
-mod support;
-
 use mimique_layout::{
     CheckOptions, Choice, Comparing, Conditions, Effort, ExpectedCurve, Face, FaceMotion, Judge,
     Layout, MapCheck, Method, NamedSet, Rehearsal, Silent, Trial, choose_heads, enough, enough_for,
     folds, mixed, worth,
 };
 use mimique_solver::{MarkerSite, Method as Solver, MethodSpec};
-use support::{EXACT, Ground, PUT};
+
+use crate::support::{self, EXACT, Ground, PUT};
 
 fn farthest(ground: &Ground<'_>, count: usize) -> Vec<usize> {
     let units = ground.units(true, &[], 0.008);

@@ -1,10 +1,10 @@
 //! Landmarks, parts, excluded places and candidates of the built-in head.
 
-mod support;
-
 use mimique_actor::{HeadSpec, build_head, marker_sites};
 use mimique_layout::{Candidates, Excluded, Face, FacePart, Layout, Side, Where};
 use mimique_stimulus::{AvatarSkin, MarkerMap, MarkerPlace};
+
+use crate::support;
 
 /// The built-in head with its own markers: labels and vertices of the welded skin.
 fn head() -> (AvatarSkin, Vec<(String, usize)>) {

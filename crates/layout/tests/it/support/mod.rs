@@ -1,5 +1,4 @@
 //! The built-in head, its range of motion and the usual places.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 use mimique_actor::{Density, HeadSpec, build_head, range_of_motion};
 use mimique_layout::{

@@ -1,11 +1,11 @@
 //! Motion from weights, from dense takes, of several people, and of nobody.
 
-mod support;
-
 use mimique_layout::{
     DenseTake, DenseTakeError, Face, FaceMotion, MotionSource, Take, TakeContent,
 };
 use mimique_test_support::Random;
+
+use crate::support;
 
 /// Frames of weights: one shape after the other, and some together.
 fn weights(n: usize, frames: usize) -> Vec<f64> {

@@ -1,13 +1,12 @@
 //! Every method gives as many markers as are wanted, apart, in pairs, the same from any number of threads.
 
-mod support;
-
 use mimique_layout::{
     Camera, Candidates, Choice, Distance, Face, FaceMotion, LayoutError, Method, Spacing, Units,
     Where, choose_heads, mixed,
 };
 use rayon::ThreadPoolBuilder;
-use support::Ground;
+
+use crate::support::{self, Ground};
 
 fn choice(face: &Face<'_>) -> Choice {
     let rehearse = mimique_layout::RehearseOptions { clusterings: 2, rounds: 1 };
