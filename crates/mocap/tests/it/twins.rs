@@ -2,21 +2,16 @@
 //! and remedy, reads as its seed, or carries a note that the seed does not. None is read otherwise in
 //! silence.
 
-#[path = "support/binary_twins.rs"]
-mod binary_twins;
-#[path = "support/twin_forms.rs"]
-mod twin_forms;
-#[path = "support/twins.rs"]
-mod twins;
-
 use std::path::Path;
 
 use mimique_geometry::coordinates;
 use mimique_mocap::{
     CaptureFacts, CaptureFile, Format, ReadError, ReadOptions, WeightOptions, formats,
 };
-use twin_forms::FORMS;
-use twins::Twin;
+
+use crate::support::binary_twins;
+use crate::support::twin_forms::FORMS;
+use crate::support::twins::{self, Twin};
 
 /// What is read of a file.
 #[derive(Debug)]

@@ -1,19 +1,15 @@
 //! Hostile files of activities: no reader panics or gives an activity that is not whole; what fuzzing keeps
 //! is replayed.
 
-#[path = "support/activity_invariants.rs"]
-mod activity_invariants;
-#[path = "support/activity_seeds.rs"]
-mod activity_seeds;
-
 use std::path::{Path, PathBuf};
 
-use activity_invariants::read_activity_anyhow;
-use activity_seeds::{checksum, written};
 use mimique_mocap::{
     ActivityColumn, activity_formats, read_activity_bytes, recognise, recognise_activity,
 };
 use proptest::prelude::*;
+
+use crate::support::activity_invariants::read_activity_anyhow;
+use crate::support::activity_seeds::{checksum, written};
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/activity")

@@ -1,17 +1,13 @@
 //! Hostile files: no reader panics, asks for memory that the file does not warrant, or gives a
 //! capture that is not whole; what fuzzing keeps is replayed.
 
-#[path = "support/invariants.rs"]
-mod invariants;
-#[path = "support/seeds.rs"]
-mod seeds;
-
 use std::path::{Path, PathBuf};
 
-use invariants::read_anyhow;
 use mimique_mocap::{formats, recognise};
 use proptest::prelude::*;
-use seeds::written;
+
+use crate::support::invariants::read_anyhow;
+use crate::support::seeds::written;
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus")
