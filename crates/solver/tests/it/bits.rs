@@ -156,5 +156,5 @@ fn every_method_gives_the_same_bits_everywhere() {
     let soft = MethodSpec { stiffness: Some(0.2), ..MethodSpec::new(Method::ThinShellSurface) };
     let solved = Fit::new(&surface(&soft), &soft).unwrap().solve_take(&d).unwrap();
     found.push(format!("soft surface {:016x}", hash(&solved.weights)));
-    assert_eq!(found.join("\n"), include_str!("golden/bits.txt").trim());
+    assert_eq!(found.join("\n"), include_str!("../golden/bits.txt").trim());
 }

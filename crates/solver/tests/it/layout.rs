@@ -2,14 +2,14 @@
 
 #![allow(clippy::needless_range_loop, reason = "matrices read best by their indices")]
 
-mod common;
-
 use mimique_geometry::{DVec3, Displacement, Point};
 use mimique_solver::{
     ClusterMarkers, Criterion, FaceMoments, Greedy, KMeans, MarkerUnit, PivotedQr, SkinGradients,
     SkinMesh, SparseDeltas, StandsFor, TrajectoryRows, VertexTrajectories, WeightMotion,
     best_heads, farthest_first, head_error, spread_centres, stands_for_pairs,
 };
+
+use crate::support;
 
 use mimique_test_support::Random;
 
@@ -356,7 +356,7 @@ fn greedy_gains_are_those_computed_from_scratch_and_errors_only_fall() {
             s.iter_mut().zip(&lost).for_each(|(s, l)| *s -= l);
             greedy.take(best);
             taken.push(best);
-            assert!(common::worst(greedy.covariance(), &s) < 1e-11);
+            assert!(support::worst(greedy.covariance(), &s) < 1e-11);
             let now: f64 = gram.iter().zip(greedy.covariance()).map(|(g, s)| g * s).sum();
             assert!(now < last && now > 0.0);
             last = now;

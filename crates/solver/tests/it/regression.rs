@@ -1,14 +1,14 @@
 //! The Gaussian process: planted maps and hyper-parameters come back, the sparse form is the exact
 //! one as far as its basis goes, what is far or lost is said.
 
-mod common;
-
 use mimique_geometry::Point;
 use mimique_solver::{
     ExactProcess, Fit, FitError, FrameWarning, Inference, Kernel, Learning, Method, MethodSpec,
     OperatorOptions, Operators, Regression, SkinMesh, SparseDeltas, SparseProcess, TrainingError,
     TrainingOptions, log_marginal_likelihood, maximise_likelihood,
 };
+
+use crate::support;
 
 /// Numbers of a standard normal distribution (Box and Muller), the same on every machine.
 struct Normal(u64);
@@ -167,7 +167,7 @@ fn sparse_form_with_room_for_all_is_the_exact_one() {
     for x_new in test.chunks_exact(WIDTH) {
         let variance = full.predict(x_new, &mut mean);
         let (expected, expected_variance) = exact_at(&exact, &kernel, &x, x_new);
-        assert!(common::worst(&mean, &expected) < 1e-8);
+        assert!(support::worst(&mean, &expected) < 1e-8);
         assert!((variance - expected_variance).abs() < 1e-8);
     }
     // The order of the examples does not matter.
@@ -179,7 +179,7 @@ fn sparse_form_with_room_for_all_is_the_exact_one() {
     let mut backwards = [0.0; OUTPUTS];
     full.predict(&test[..WIDTH], &mut mean);
     other.predict(&test[..WIDTH], &mut backwards);
-    assert!(common::worst(&mean, &backwards) < 1e-8);
+    assert!(support::worst(&mean, &backwards) < 1e-8);
     // An example seen again and again takes no place, and is believed the more.
     let mut twice = full.clone();
     let before = twice.predict(&x[..WIDTH], &mut mean);
@@ -188,7 +188,7 @@ fn sparse_form_with_room_for_all_is_the_exact_one() {
     });
     assert_eq!(twice.len(), 120);
     assert!(twice.predict(&x[..WIDTH], &mut mean) < before);
-    assert!(common::worst(&mean, &y[..OUTPUTS]) < 0.05);
+    assert!(support::worst(&mean, &y[..OUTPUTS]) < 0.05);
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! Laplacian, thin shell, D, H and their scales against closed forms; `mimique verify` holds them
 //! against stored matrices.
 
-mod common;
-
 use mimique_geometry::{Displacement, Point};
 use mimique_solver::{
     Laplacian, LaplacianKind, OperatorOptions, OperatorParts, Operators, SkinMesh, SparseDeltas,
     VertexAssociation, apply_shell, mixed_voronoi_areas, shell_gram,
 };
 use mimique_test_support::real_data;
+
+use crate::support;
 
 /// A width x height grid in the plane, each square cut along the same diagonal.
 fn grid(width: usize, height: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
@@ -125,7 +125,7 @@ fn energy_of_a_translation_is_zero_and_of_a_rotation_is_not() {
 #[test]
 fn welding_closes_the_seams_of_an_exported_head() {
     let Some(data) = real_data("welding_closes_the_seams_of_an_exported_head") else { return };
-    let (mesh, _) = common::read_skin(&data.join("ict-facekit/ict-facekit.glb"));
+    let (mesh, _) = support::read_skin(&data.join("ict-facekit/ict-facekit.glb"));
     // 11,925 vertices in the file; every place holds one vertex afterwards.
     let mut places: Vec<[u64; 3]> =
         mesh.positions.iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
@@ -229,7 +229,7 @@ fn parts_restore_the_same_bits() {
         association: Some(VertexAssociation::Zones { sigma: 0.012 }),
         ..OperatorOptions::default()
     };
-    let built = common::operators(&data, &options);
+    let built = support::operators(&data, &options);
     let parts: OperatorParts = built.parts().clone();
     let restored = Operators::from_parts(parts).unwrap();
     assert_eq!(restored.data_scale().to_bits(), built.data_scale().to_bits());

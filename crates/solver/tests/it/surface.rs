@@ -1,8 +1,6 @@
 //! The surface moved by its markers: the equation is met, planted answers come back, what is lost or
 //! soft is what the whole surface would say.
 
-mod common;
-
 use std::collections::BTreeMap;
 
 use mimique_geometry::{Displacement, Point};
@@ -11,6 +9,8 @@ use mimique_solver::{
     Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas, SurfaceError,
     SurfaceGreedy, SurfaceResponse,
 };
+
+use crate::support;
 
 const WIDTH: usize = 13;
 const KINDS: [LaplacianKind; 4] = [
@@ -178,7 +178,7 @@ fn turning_mesh_and_markers_together_turns_the_answer() {
             response(mesh, &MARKERS, &options).displacements(&weights)
         };
         for (a, b) in field(&mesh, &d).into_iter().zip(field(&turned, &dt)) {
-            assert!(common::worst(&turn(a.to_array()), &b.to_array()) < 1e-11, "{kind:?}");
+            assert!(support::worst(&turn(a.to_array()), &b.to_array()) < 1e-11, "{kind:?}");
         }
     }
 }
@@ -202,7 +202,7 @@ fn planted_fields_are_recovered_from_the_two_outer_rings() {
     let field = response.displacements(&weights);
     for (i, d) in field.iter().enumerate() {
         let expected = planted(i).map(|x| x * METRES_PER_WEIGHT);
-        assert!(common::worst(&d.to_array(), &expected) < 1e-13, "vertex {i}: {d:?} {expected:?}");
+        assert!(support::worst(&d.to_array(), &expected) < 1e-13, "vertex {i}: {d:?} {expected:?}");
     }
 }
 
@@ -232,14 +232,14 @@ fn a_lost_marker_is_a_marker_less() {
         let worst = a
             .iter()
             .zip(&b)
-            .fold(0.0_f64, |w, (a, b)| w.max(common::worst(&a.to_array(), &b.to_array())));
+            .fold(0.0_f64, |w, (a, b)| w.max(support::worst(&a.to_array(), &b.to_array())));
         assert!(worst < 1e-12, "{kind:?} {stiffness}: {worst:e}");
         // A marker without importance is one that is never seen.
         let mut unimportant = spec(&options, stiffness);
         unimportant.importance = BTreeMap::from_iter([("M2".into(), 0.0), ("M6".into(), 0.0)]);
         let fit = Fit::new(&all, &unimportant).unwrap();
         let ignored = fit.solve_frame(&displacements(MARKERS.len())).unwrap();
-        assert!(common::worst(&ignored.weights, &found.weights) < 1e-12);
+        assert!(support::worst(&ignored.weights, &found.weights) < 1e-12);
     }
     let options = options(LaplacianKind::Uniform);
     let fit = Fit::new(&operators(&mesh, &MARKERS, &options), &spec(&options, 0.0)).unwrap();
@@ -294,7 +294,7 @@ fn soft_markers_balance_the_energy_and_harden_without_stiffness() {
         assert!(here.report.energy < last.report.energy);
         assert!(here.report.residual > last.report.residual);
         if stiffness == 1e-9 {
-            assert!(common::worst(&here.weights, &last.weights) < 1e-7);
+            assert!(support::worst(&here.weights, &last.weights) < 1e-7);
         }
         last = here;
     }
@@ -329,8 +329,8 @@ fn a_real_skin_follows_its_markers() {
     let Some(data) = mimique_test_support::real_data("a_real_skin_follows_its_markers") else {
         return;
     };
-    let (skin, _) = common::skin(&data);
-    let markers: Vec<usize> = common::markers(&data, "face").iter().map(|m| m.1).collect();
+    let (skin, _) = support::skin(&data);
+    let markers: Vec<usize> = support::markers(&data, "face").iter().map(|m| m.1).collect();
     let p = markers.len();
     // Nothing held: all markers moved by 1 carry the whole skin along.
     let free = response(&skin, &markers, &OperatorOptions::default());

@@ -1,13 +1,13 @@
 //! A bank with visemes made of its other shapes, as many heads have: the markers cannot tell them from
 //! their parts, the answers stay those of a face.
 
-mod common;
-
 use mimique_geometry::Displacement;
 use mimique_solver::{
     Fit, LARGEST_WEIGHT, Method, MethodSpec, OperatorOptions, Operators, SparseDeltas,
 };
 use mimique_test_support::real_data;
+
+use crate::support;
 
 /// The combination of some shapes, rounded as an avatar file stores it.
 fn combined(shapes: &[SparseDeltas], vertices: usize, parts: &[(usize, f64)]) -> SparseDeltas {
@@ -28,9 +28,9 @@ fn combined(shapes: &[SparseDeltas], vertices: usize, parts: &[(usize, f64)]) ->
 #[test]
 fn visemes_made_of_other_shapes_change_no_face() {
     let Some(data) = real_data("visemes_made_of_other_shapes_change_no_face") else { return };
-    let (mut mesh, mut names) = common::skin(&data);
-    let markers = common::markers(&data, "face");
-    let (frames, d) = common::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
+    let (mut mesh, mut names) = support::skin(&data);
+    let markers = support::markers(&data, "face");
+    let (frames, d) = support::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
     let specs = [Method::Nnls, Method::Box, Method::Kouadio, Method::Lsts, Method::Ridge]
         .map(MethodSpec::new);
     let built = |mesh: &_, names: &[String], spec: &MethodSpec| {
@@ -59,8 +59,8 @@ fn visemes_made_of_other_shapes_change_no_face() {
         assert_eq!(fit.chooses_least_norm(), spec.method != Method::Ridge, "{}", spec.method);
         let solved = fit.solve_take(&d).unwrap();
         assert_eq!(solved.reports.len(), frames);
-        let largest = common::largest(&solved.weights);
-        let before = common::largest(&plain.weights);
+        let largest = support::largest(&solved.weights);
+        let before = support::largest(&plain.weights);
         eprintln!("{}: largest weight {largest:.3}, {before:.3} without visemes", spec.method);
         assert!(largest < 0.5 * LARGEST_WEIGHT, "{}: {largest}", spec.method);
         for (report, before) in solved.reports.iter().zip(&plain.reports) {

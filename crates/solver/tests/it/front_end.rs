@@ -1,7 +1,5 @@
 //! Head, neutral, alignment and adaptation, alone and up to the planted take.
 
-mod common;
-
 use std::path::Path;
 
 use mimique_geometry::{DQuat, Point, RigidError, RigidMotion, align_rigidly};
@@ -10,6 +8,8 @@ use mimique_solver::{
     OperatorOptions, Rbf, RbfError,
 };
 use mimique_test_support::real_data;
+
+use crate::support;
 
 type Points = Vec<Point>;
 
@@ -27,9 +27,9 @@ struct Golden {
 
 fn golden() -> Golden {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/rbf_scipy.json");
-    let json = common::json(&file);
+    let json = support::json(&file);
     let points = |key: &str| -> Points {
-        common::numbers(&json[key]).as_chunks::<3>().0.iter().map(|&p| p.into()).collect()
+        support::numbers(&json[key]).as_chunks::<3>().0.iter().map(|&p| p.into()).collect()
     };
     Golden {
         actor: points("actor"),
@@ -188,16 +188,16 @@ fn head_motion_leaves_displacements_unchanged() {
     let a = displacements(&still, &columns).unwrap();
     let b = displacements(&moving, &columns).unwrap();
     // 3e-12 mm in metres.
-    let error = common::worst(&a, &b);
+    let error = support::worst(&a, &b);
     eprintln!("head motion moves d by {error:.1e} m");
     assert!(error < 3e-15, "{error:e}");
-    assert!(common::largest(&a) > 1e-3);
+    assert!(support::largest(&a) > 1e-3);
     // The neutral is met exactly.
-    assert!(common::largest(&a[..120]) < 1e-15);
+    assert!(support::largest(&a[..120]) < 1e-15);
     // A capture that was stabilised before needs no head.
     let none = MarkerColumns { head: None, ..columns };
     let c = displacements(&still, &none).unwrap();
-    assert!(common::worst(&a, &c) < 1e-15);
+    assert!(support::worst(&a, &c) < 1e-15);
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn near_rigid_face_markers_can_be_the_head() {
     let (take, columns) = small_take(12, true);
     let shared = MarkerColumns { head: Some(vec![0, 7, 11, 19, 40, 41]), ..columns };
     let d = displacements(&take, &shared).unwrap();
-    assert!(d.iter().all(|x| x.is_finite()) && common::largest(&d) < 0.02);
+    assert!(d.iter().all(|x| x.is_finite()) && support::largest(&d) < 0.02);
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn lowpass_passes_lines_and_halves_the_power_at_its_cutoff_both_ways() {
     let mut line: Vec<f64> = (0..300).map(|i| 3.0 + 0.1 * f64::from(i)).collect();
     let before = line.clone();
     lowpass.filter(&mut line);
-    assert!(common::worst(&line, &before) < 1e-6 * 30.0);
+    assert!(support::worst(&line, &before) < 1e-6 * 30.0);
     for (hz, gain) in [(1.0, 1.0), (10.0, 0.5), (40.0, 0.0)] {
         let wave = |i: usize| (2.0 * std::f64::consts::PI * hz * i as f64 / 200.0).sin();
         let mut signal: Vec<f64> = (0..2000).map(wave).collect();
@@ -325,7 +325,7 @@ fn head_lowpass_takes_noise_out_of_the_pose() {
 
 /// The planted take: millimetres in the CSV, metres here; 40 face and 6 head markers.
 fn planted_displacements(data: &Path, avatar: &Points) -> (usize, Vec<f64>) {
-    let (frames, cells) = common::table(&data.join("lsts/take_n01.csv"), 2);
+    let (frames, cells) = support::table(&data.join("lsts/take_n01.csv"), 2);
     let metres: Vec<f64> = cells.iter().map(|x| x / 1000.0).collect();
     let take = MarkerFrames { positions: &metres, columns: 46 };
     let columns = MarkerColumns { face: (0..40).collect(), head: Some((40..46).collect()) };
@@ -339,7 +339,7 @@ fn every_frame_of_the_planted_take_meets_its_conditions() {
     let Some(data) = real_data("every_frame_of_the_planted_take_meets_its_conditions") else {
         return;
     };
-    let operators = common::operators(&data, &OperatorOptions::default());
+    let operators = support::operators(&data, &OperatorOptions::default());
     let (frames, d) = planted_displacements(&data, &operators.parts().marker_positions);
     assert_eq!(frames, 5660);
     for (method, alpha) in

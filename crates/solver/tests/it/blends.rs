@@ -1,11 +1,9 @@
 //! A blend of two methods: its ends are the methods themselves, bit by bit, and between them weights are mixed.
 
-#[path = "common/sheet.rs"]
-mod sheet;
-
 use mimique_solver::{Group, Method, MethodSpec, SpecFault};
 use serde_json::json;
-use sheet::{EXPRESSION, fit, noisy};
+
+use crate::support::sheet::{EXPRESSION, fit, noisy};
 
 fn spec(value: serde_json::Value) -> MethodSpec {
     MethodSpec::checked(&value).expect("a method")

@@ -1,7 +1,5 @@
 //! The baselines of other groups: optima certified by the equations of their papers, written here again.
 
-mod common;
-
 use std::cmp::Ordering;
 
 use mimique_geometry::Point;
@@ -10,6 +8,8 @@ use mimique_solver::{
     TakeSolution, WINDOW_FRAMES,
 };
 use proptest::prelude::*;
+
+use crate::support;
 
 const NAMES: [&str; 9] = [
     "jawOpen",
@@ -251,7 +251,7 @@ proptest! {
         let spec = MethodSpec::new(method);
         let a = solve(&operators, &spec, &d).weights;
         let b = solve(&Operators::from_parts(parts).unwrap(), &spec, &other).weights;
-        prop_assert!(common::worst(&a, &b) < 1e-10);
+        prop_assert!(support::worst(&a, &b) < 1e-10);
     }
 }
 
@@ -319,7 +319,7 @@ fn sparse_is_what_coordinate_descent_ends_at() {
             c[k] = ((b[k] - lambda - rest) / q[k][k]).clamp(0.0, 1.0);
         }
     }
-    assert!(common::worst(&found, &c) < 1e-10, "{found:?} {c:?}");
+    assert!(support::worst(&found, &c) < 1e-10, "{found:?} {c:?}");
 }
 
 #[test]
@@ -340,7 +340,7 @@ fn audio2face_as_shipped_draws_to_rest_and_balanced_holds_still() {
     let without = end(Method::A2f, 0.0);
     assert_eq!(without, end(Method::A2fBalanced, 0.0));
     let balanced = end(Method::A2fBalanced, 0.5);
-    assert!(common::worst(&balanced, &without) < 1e-9, "{balanced:?} {without:?}");
+    assert!(support::worst(&balanced, &without) < 1e-9, "{balanced:?} {without:?}");
     let shipped = end(Method::A2f, 0.5);
     let sum = |c: &[f64]| c.iter().sum::<f64>();
     assert!(sum(&shipped) < 0.999 * sum(&without), "{shipped:?} {without:?}");
@@ -380,7 +380,7 @@ fn without_second_differences_a_window_is_its_frames() {
     // A single frame has no second difference.
     let spec = MethodSpec::new(Method::SmoothSparse);
     let one = solve(&operators, &spec, &d[..3 * P]).weights;
-    assert!(common::worst(&one, &frames.weights[..N]) < 1e-12);
+    assert!(support::worst(&one, &frames.weights[..N]) < 1e-12);
 }
 
 #[test]

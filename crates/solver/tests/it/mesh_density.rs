@@ -1,13 +1,14 @@
 //! A mesh four times as fine: the same face, and frames that cost the same (METHOD, tests 7 and 8).
 
-mod common;
-#[path = "../../stimulus/benches/mesh/mod.rs"]
+#[path = "../../../stimulus/benches/mesh/mod.rs"]
 #[allow(dead_code, reason = "the benchmarks use the rest")]
 mod mesh;
 
 use mimique_geometry::{Displacement, Point};
 use mimique_solver::{Fit, Method, MethodSpec, OperatorOptions, Operators, SkinMesh, SparseDeltas};
 use mimique_test_support::real_data;
+
+use crate::support;
 
 /// The forms that are free of units and of the mesh's density.
 const NORMALISED: [Method; 4] =
@@ -80,7 +81,8 @@ fn check(coarse: &Scene, fine: &Scene, d: &[f64], most_mm: [f64; 4]) {
         let sizes = |o: &Operators| (o.parts().marker_deltas.len(), o.parts().shell_gram.len());
         assert_eq!(sizes(&of_coarse), sizes(&of_fine));
         assert!(
-            common::worst(&of_coarse.parts().marker_deltas, &of_fine.parts().marker_deltas) < 1e-15
+            support::worst(&of_coarse.parts().marker_deltas, &of_fine.parts().marker_deltas)
+                < 1e-15
         );
         assert_ne!(of_coarse.parts().shell_gram, of_fine.parts().shell_gram);
         let solve = |o: &Operators| Fit::new(o, &spec).unwrap().solve_take(d).unwrap().weights;
@@ -116,11 +118,11 @@ fn a_sheet_four_times_as_fine_moves_alike() {
 #[test]
 fn a_real_skin_four_times_as_fine_moves_alike() {
     let Some(data) = real_data("a_real_skin_four_times_as_fine_moves_alike") else { return };
-    let (skin, names) = common::skin(&data);
-    let (_, d) = common::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
+    let (skin, names) = support::skin(&data);
+    let (_, d) = support::table(&data.join("lsts/frames/_Dm_metres.csv"), 1);
     // Cut along straight lines: old vertices stay, and keep their numbers.
     let finer = mesh::finer(&skin, 2);
-    let markers = common::markers(&data, "face");
+    let markers = support::markers(&data, "face");
     let coarse = (skin, names.clone(), markers.clone());
     check(&coarse, &(finer, names, markers), &d, [0.1, 0.1, 0.15, 0.12]);
 }

@@ -1,9 +1,5 @@
 //! What every method must obey: invariances, limits, lost markers, names, words.
 
-mod common;
-#[path = "common/sheet.rs"]
-mod sheet;
-
 use std::collections::BTreeMap;
 
 use mimique_solver::{
@@ -11,7 +7,9 @@ use mimique_solver::{
     Operators, SkinMesh, SparseDeltas, Unit,
 };
 use proptest::prelude::*;
-use sheet::{EXPRESSION, displacements, fit, noisy, operators, sheet};
+
+use crate::support;
+use crate::support::sheet::{EXPRESSION, displacements, fit, noisy, operators, sheet};
 
 /// Every method that finds weights from markers and shapes alone.
 fn solved() -> Vec<Method> {
@@ -46,7 +44,7 @@ proptest! {
         let scaled: Vec<f64> = d.iter().map(|x| x * unit).collect();
         let other = operators(unit, &OperatorOptions::default());
         let units = Fit::new(&other, &spec).unwrap().solve_frame(&scaled).unwrap().weights;
-        prop_assert!(common::worst(&metres, &units) < 1e-12);
+        prop_assert!(support::worst(&metres, &units) < 1e-12);
     }
 
     #[test]
@@ -68,7 +66,7 @@ proptest! {
         let a = fit(&spec).solve_frame(&d).unwrap().weights;
         let b = Fit::new(&other, &spec).unwrap().solve_frame(&d).unwrap().weights;
         let back: Vec<f64> = order.iter().map(|&k| a[k]).collect();
-        prop_assert!(common::worst(&back, &b) < 1e-10);
+        prop_assert!(support::worst(&back, &b) < 1e-10);
     }
 
     #[test]
@@ -92,7 +90,7 @@ proptest! {
         let dt: Vec<f64> = d.chunks(3).flat_map(|x| turn([x[0], x[1], x[2]])).collect();
         let a = fit(&spec).solve_frame(&d).unwrap().weights;
         let b = Fit::new(&turned, &spec).unwrap().solve_frame(&dt).unwrap().weights;
-        prop_assert!(common::worst(&a, &b) < 1e-9);
+        prop_assert!(support::worst(&a, &b) < 1e-9);
     }
 
     #[test]
@@ -109,7 +107,7 @@ proptest! {
         let mut warm = vec![0.0; 9];
         solver.solve(&noisy(&other, 0.0), &mut warm).unwrap();
         solver.solve(&d, &mut warm).unwrap();
-        prop_assert!(common::worst(&cold.weights, &warm) < 1e-10);
+        prop_assert!(support::worst(&cold.weights, &warm) < 1e-10);
     }
 
     #[test]
@@ -141,7 +139,7 @@ fn literal_form_depends_on_its_unit() {
         spec.unit = Some(unit);
         fit(&spec).solve_frame(&d).unwrap().weights
     };
-    assert!(common::worst(&solve(Unit::Mm), &solve(Unit::M)) > 1e-6);
+    assert!(support::worst(&solve(Unit::Mm), &solve(Unit::M)) > 1e-6);
 }
 
 #[test]
@@ -149,13 +147,13 @@ fn without_noise_and_shell_the_weights_are_recovered_and_the_error_follows_alpha
     let d = noisy(&EXPRESSION, 0.0);
     for method in [Method::Box, Method::Nnls, Method::PseudoInverse] {
         let found = fit(&MethodSpec::new(method)).solve_frame(&d).unwrap();
-        assert!(common::worst(&found.weights, &EXPRESSION) < 1e-11, "{method}");
+        assert!(support::worst(&found.weights, &EXPRESSION) < 1e-11, "{method}");
         assert!(found.report.residual < 1e-14);
     }
     let error = |kappa: f64| {
         let mut spec = MethodSpec::new(Method::ThinShellOnly);
         spec.kappa = Some(kappa);
-        common::worst(&fit(&spec).solve_frame(&d).unwrap().weights, &EXPRESSION)
+        support::worst(&fit(&spec).solve_frame(&d).unwrap().weights, &EXPRESSION)
     };
     let (large, small) = (error(1e-5), error(1e-6));
     assert!(small < 1e-4 && (large / small - 10.0).abs() < 0.1, "{large:e} {small:e}");
@@ -179,7 +177,7 @@ fn exactly_met_markers_are_smoothed_and_said_so() {
     spec.soft_bounds = Some([-3.0, 4.0]);
     let found = fit(&spec).solve_frame(&noisy(&EXPRESSION, 0.0)).unwrap();
     assert_eq!(found.report.warning, Some(FrameWarning::Smoothed));
-    assert!(common::worst(&found.weights, &EXPRESSION) < 1e-2, "{:?}", found.weights);
+    assert!(support::worst(&found.weights, &EXPRESSION) < 1e-2, "{:?}", found.weights);
     assert!(found.report.kkt_error < 1e-9);
 }
 
@@ -229,7 +227,7 @@ fn lost_markers_drop_their_rows() {
         assert_eq!(with_holes.report.missing_markers, 2);
         let full = fit(&spec).solve_frame(&d).unwrap();
         assert_eq!(full.report.missing_markers, 0);
-        assert!(common::worst(&full.weights, &with_holes.weights) > 1e-9, "{method}");
+        assert!(support::worst(&full.weights, &with_holes.weights) > 1e-9, "{method}");
 
         // The same as markers without importance (which also take their part of l^2 with them: the
         // methods without a prior do not see it).
@@ -238,7 +236,7 @@ fn lost_markers_drop_their_rows() {
             unimportant.importance =
                 BTreeMap::from_iter([("M04".to_owned(), 0.0), ("M09".to_owned(), 0.0)]);
             let without = fit(&unimportant).solve_frame(&d).unwrap();
-            assert!(common::worst(&without.weights, &with_holes.weights) < 1e-9, "{method}");
+            assert!(support::worst(&without.weights, &with_holes.weights) < 1e-9, "{method}");
         }
         if method.uses_other_frames() {
             continue;
@@ -246,8 +244,8 @@ fn lost_markers_drop_their_rows() {
         // The answer does not depend on what was lost before.
         let take = [d.clone(), holed.clone(), d.clone(), holed].concat();
         let solved = fit(&spec).solve_take(&take).unwrap();
-        assert!(common::worst(&solved.weights[18..27], &full.weights) < 1e-10, "{method}");
-        assert!(common::worst(&solved.weights[27..], &with_holes.weights) < 1e-10, "{method}");
+        assert!(support::worst(&solved.weights[18..27], &full.weights) < 1e-10, "{method}");
+        assert!(support::worst(&solved.weights[27..], &with_holes.weights) < 1e-10, "{method}");
     }
     let nothing = fit(&MethodSpec::new(Method::Lsts)).solve_frame(&[f64::NAN; 36]).unwrap();
     assert_eq!(nothing.weights, [0.0; 9]);
@@ -289,7 +287,7 @@ fn importance_has_no_unit_and_pulls() {
         let even = MethodSpec { importance: all(4.0), ..spec.clone() };
         let a = fit(&spec).solve_frame(&d).unwrap();
         let b = fit(&even).solve_frame(&d).unwrap();
-        assert!(common::worst(&a.weights, &b.weights) < 1e-10, "{method}");
+        assert!(support::worst(&a.weights, &b.weights) < 1e-10, "{method}");
         assert!((a.report.residual - b.report.residual).abs() < 1e-12);
     }
     // A marker that slipped by 4 mm does less harm the less it counts.
@@ -298,7 +296,7 @@ fn importance_has_no_unit_and_pulls() {
     let harm = |importance: f64| {
         let mut spec = MethodSpec::new(Method::Box);
         spec.importance.insert("M04".to_owned(), importance);
-        common::worst(&fit(&spec).solve_frame(&slipped).unwrap().weights, &EXPRESSION)
+        support::worst(&fit(&spec).solve_frame(&slipped).unwrap().weights, &EXPRESSION)
     };
     let (none, little, full) = (harm(0.0), harm(0.1), harm(1.0));
     assert!(none < 1e-11 && 0.0 < little && little < 0.7 * full, "{none:e} {little} {full}");
@@ -472,7 +470,7 @@ fn gain_multiplies_the_weights_within_their_bounds() {
                 assert_eq!(twice.weights, expected, "{method}");
                 continue;
             }
-            assert!(common::worst(&twice.weights[9..], &found.weights) < 1e-9, "{method}");
+            assert!(support::worst(&twice.weights[9..], &found.weights) < 1e-9, "{method}");
         }
     }
     let wrong = MethodSpec { gain: Some(0.0), ..MethodSpec::new(Method::Box) };
@@ -488,8 +486,9 @@ fn ridge_recovers_planted_weights_and_meets_its_conditions() {
     let (parts, n) = (operators.parts(), 9);
     let spec = |kappa| MethodSpec { kappa: Some(kappa), ..MethodSpec::new(Method::Ridge) };
     let exact = noisy(&EXPRESSION, 0.0);
-    let error =
-        |kappa| common::worst(&fit(&spec(kappa)).solve_frame(&exact).unwrap().weights, &EXPRESSION);
+    let error = |kappa| {
+        support::worst(&fit(&spec(kappa)).solve_frame(&exact).unwrap().weights, &EXPRESSION)
+    };
     // The prior draws the weights away from the planted ones as much as it weighs.
     let (large, small) = (error(1e-5), error(1e-6));
     assert!(small < 1e-4 && (large / small - 10.0).abs() < 0.1, "{large:e} {small:e}");
@@ -519,5 +518,5 @@ fn ridge_recovers_planted_weights_and_meets_its_conditions() {
 
     // `lsts` with H in the place of the scaled identity is another answer.
     let shell = fit(&MethodSpec::new(Method::Lsts)).solve_frame(&d).unwrap();
-    assert!(common::worst(&shell.weights, c) > 1e-3);
+    assert!(support::worst(&shell.weights, c) > 1e-3);
 }

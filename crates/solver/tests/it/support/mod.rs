@@ -1,5 +1,6 @@
 //! The planted problem of the real data, read for tests.
-#![allow(dead_code, reason = "each test file uses its part")]
+
+pub mod sheet;
 
 use std::path::Path;
 
