@@ -1,5 +1,6 @@
 //! A small analytic head, an adapter or a skip by name, and the comparison of pictures.
-#![allow(dead_code)]
+
+pub mod sheet;
 
 use std::f32::consts::PI;
 

@@ -1,29 +1,37 @@
 //! What a frame leaves behind: nothing. Frames run for hours in a study.
 #![allow(unsafe_code)] // An allocator is unsafe by its interface.
 
-mod support;
-
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicIsize, Ordering};
+use std::cell::Cell;
 
 use mimique_stage::wgpu;
 use mimique_stage::{Look, Renderer, View};
 use mimique_test_support::skip;
 
-/// Counts the bytes of the heap that are in use.
+use crate::support;
+
+/// Counts the bytes of the heap that each thread has in use: other tests may run in the same process.
 struct Counting;
 
-static IN_USE: AtomicIsize = AtomicIsize::new(0);
+thread_local! {
+    static IN_USE: Cell<isize> = const { Cell::new(0) };
+}
+
+impl Counting {
+    fn add(bytes: isize) {
+        IN_USE.with(|in_use| in_use.set(in_use.get() + bytes));
+    }
+}
 
 // SAFETY: every call goes to the system's allocator as it came.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        IN_USE.fetch_add(layout.size() as isize, Ordering::Relaxed);
+        Self::add(layout.size() as isize);
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        IN_USE.fetch_sub(layout.size() as isize, Ordering::Relaxed);
+        Self::add(-(layout.size() as isize));
         unsafe { System.dealloc(at, layout) }
     }
 }
@@ -73,7 +81,7 @@ fn a_thousand_frames_leave_nothing_behind() {
         let hub = report.hub_report();
         let kept = [&hub.buffers, &hub.textures, &hub.texture_views, &hub.bind_groups]
             .map(|kind| kind.num_allocated);
-        (kept, IN_USE.load(Ordering::Relaxed))
+        (kept, IN_USE.get())
     };
     // Pools of the first frames grow to their size.
     let (kept, mut in_use) = frames(100);

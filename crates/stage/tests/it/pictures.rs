@@ -1,10 +1,10 @@
 //! What must hold for every picture, whatever the look's details.
 
-mod support;
-
 use mimique_avatar::Avatar;
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, StageError, View};
+
+use crate::support;
 
 const SIZE: [u32; 2] = [160, 200];
 

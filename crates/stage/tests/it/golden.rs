@@ -5,15 +5,13 @@
 //!
 //! `MIMIQUE_UPDATE_GOLDEN=1` writes the golden pictures anew; look at them before committing.
 
-#[path = "support/sheet.rs"]
-mod sheet;
-mod support;
-
 use std::path::{Path, PathBuf};
 
 use mimique_avatar::Avatar;
 use mimique_stage::offscreen::{Offscreen, Picture};
 use mimique_stage::{Look, View};
+
+use crate::support::{self, sheet};
 
 const MOST_MEAN: f64 = 0.75;
 const MOST_CELL_MEAN: f64 = 0.25;

@@ -1,11 +1,11 @@
 //! Where the camera stands: the landmarks of made and real heads, with eyes and without.
 
-mod support;
-
 use mimique_actor::{HeadSpec, Identity, build_head};
 use mimique_avatar::{Avatar, Part};
 use mimique_avatar_files::read_avatar;
 use mimique_stage::Landmarks;
+
+use crate::support;
 
 fn heads(test: &str) -> Vec<Avatar> {
     let real = mimique_test_support::real_file(test, "ict-facekit/ict-facekit.glb");
