@@ -9,9 +9,9 @@ use mimique_storage::Storage;
 use mimique_test_support::skip;
 use serde_json::{Value, json};
 
-use crate::block_on;
-use crate::child::Server;
-use crate::people::{Person, acknowledged, answer_while, compare, exchange, text_of};
+use crate::client::block_on;
+use crate::live::child::Server;
+use crate::live::people::{Person, acknowledged, answer_while, compare, exchange, text_of};
 
 /// A small disk of its own in memory; gone when dropped.
 struct Disk(PathBuf);

@@ -1,7 +1,8 @@
-//! The HTTP interface on SQLite and on PostgreSQL: one suite, both databases.
+//! The integration tests of `mimique-server`, in one binary.
 //!
-//! On SQLite every topic is a test of its own; on PostgreSQL all topics run in one test on a private
-//! cluster, each in a fresh database.
+//! The HTTP interface on SQLite and on PostgreSQL: one suite, both databases. On SQLite every topic is a
+//! test of its own; on PostgreSQL all topics run in one test on a private cluster, each in a fresh
+//! database.
 
 mod accounts;
 mod active_pairs;
@@ -12,6 +13,7 @@ mod defences;
 mod enrolment;
 mod exports;
 mod limits;
+mod live;
 mod mimicry;
 mod misfits;
 mod pages;

@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 use mimique_storage::Storage;
 use serde_json::{Value, json};
 
-use crate::child::Server;
-use crate::owner::add_owner;
-use crate::people::exchange;
-use crate::{block_on, study};
+use crate::client::block_on;
+use crate::live::child::Server;
+use crate::live::owner::add_owner;
+use crate::live::people::exchange;
+use crate::study;
 
 const TOKEN: &str = "mimique_memory";
 /// Megabytes of events in the study.

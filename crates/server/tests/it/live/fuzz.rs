@@ -6,10 +6,10 @@ use mimique_storage::Storage;
 use mimique_test_support::{python, skip};
 use serde_json::Value;
 
-use crate::block_on;
-use crate::child::Server;
-use crate::owner::add_owner;
-use crate::people::exchange;
+use crate::client::block_on;
+use crate::live::child::Server;
+use crate::live::owner::add_owner;
+use crate::live::people::exchange;
 
 /// What a script of an owner sends.
 const TOKEN: &str = "mimique_fuzz";

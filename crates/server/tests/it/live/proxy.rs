@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use mimique_test_support::skip;
 
-use crate::block_on;
-use crate::child::Server;
-use crate::people::{Person, acknowledged, answer_while, compare, exchange, text_of};
+use crate::client::block_on;
+use crate::live::child::Server;
+use crate::live::people::{Person, acknowledged, answer_while, compare, exchange, text_of};
 use crate::postgres::Cluster;
 
 /// nginx in the foreground; gone when dropped.
@@ -48,7 +48,7 @@ struct Ports {
 
 /// The configuration of `docs/guide/deployment/nginx.conf`, with this test's ports and files.
 fn configuration(folder: &Path, ports: &Ports, servers: &[u16]) -> String {
-    let template = include_str!("../../../../docs/guide/deployment/nginx.conf");
+    let template = include_str!("../../../../../docs/guide/deployment/nginx.conf");
     let Ports { plain, secure, inner } = ports;
     let upstream: String = servers
         .iter()

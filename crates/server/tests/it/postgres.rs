@@ -62,7 +62,6 @@ impl Cluster {
     }
 
     /// Changes a setting for everybody, now.
-    #[allow(dead_code, reason = "the live tests use it")]
     pub async fn set(&self, name: &str, value: &str) {
         let server = format!("postgres://mimique@127.0.0.1:{}/postgres", self.port);
         let mut connection = PgConnection::connect(&server).await.unwrap();
@@ -77,7 +76,6 @@ impl Cluster {
     }
 
     /// Stops (`fast`: rolling back; `immediate`: as if killed) and starts.
-    #[allow(dead_code, reason = "the live tests use it")]
     pub fn restart(&self, mode: &str) {
         let log = self.folder.path().join("log");
         self.run(&format!(
@@ -88,7 +86,6 @@ impl Cluster {
     }
 
     /// Turns on TLS with a certificate for 127.0.0.1; the certificate to trust.
-    #[allow(dead_code, reason = "the http tests use it")]
     pub fn use_tls(&self) -> PathBuf {
         let data = self.data();
         self.shell(&format!(

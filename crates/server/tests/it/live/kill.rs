@@ -4,9 +4,9 @@
 
 use std::time::Duration;
 
-use crate::block_on;
-use crate::child::Server;
-use crate::people::{Person, acknowledged, compare};
+use crate::client::block_on;
+use crate::live::child::Server;
+use crate::live::people::{Person, acknowledged, compare};
 use crate::postgres::Cluster;
 
 const PEOPLE: u64 = 4;

@@ -7,9 +7,11 @@ use std::time::{Duration, Instant};
 use mimique_session::wire::{Acknowledged, SessionStarted};
 use serde_json::{Value, json};
 
-use crate::block_on;
-use crate::child::Server;
-use crate::people::{Person, acknowledged, answer_while, compare, exchange, text_of, whole_answer};
+use crate::client::block_on;
+use crate::live::child::Server;
+use crate::live::people::{
+    Person, acknowledged, answer_while, compare, exchange, text_of, whole_answer,
+};
 use crate::postgres::Cluster;
 
 fn sqlite(folder: &tempfile::TempDir) -> String {
@@ -316,7 +318,7 @@ fn a_caller_who_does_not_read_is_shown_out() {
 #[test]
 fn health_is_told_when_all_connections_are_taken() {
     let folder = tempfile::tempdir().unwrap();
-    let before = format!("export {}=8", crate::child::CONNECTIONS);
+    let before = format!("export {}=8", crate::live::child::CONNECTIONS);
     let server = Server::start_with(&sqlite(&folder), 0, &before);
     let taken: Vec<TcpStream> = (0..8)
         .map(|_| {

@@ -7,7 +7,8 @@ use std::time::Duration;
 use mimique_server::{App, Settings};
 use mimique_storage::Storage;
 
-use crate::{block_on, study};
+use crate::client::block_on;
+use crate::study;
 
 /// Set in the server's process: the database's address.
 const DATABASE: &str = "MIMIQUE_LIVE_TEST_DATABASE";
@@ -15,7 +16,7 @@ const DATABASE: &str = "MIMIQUE_LIVE_TEST_DATABASE";
 const LISTEN: &str = "MIMIQUE_LIVE_TEST_LISTEN";
 /// How many connections there may be.
 pub const CONNECTIONS: &str = "MIMIQUE_LIVE_TEST_CONNECTIONS";
-const NAME: &str = "child::serve_when_told_to";
+const NAME: &str = "live::child::serve_when_told_to";
 
 /// Serves until it is told to stop, in the process that [`Server::start`] makes; nothing otherwise.
 #[test]
