@@ -1,12 +1,11 @@
 //! `mimique exertion` as a researcher types it: results, exit codes, errors, and nothing half written.
 
-mod common;
-
 use std::path::Path;
 
-use common::{exertion_args, ok, refused, sample, text};
 use mimique_test_support::repository;
 use serde_json::Value;
+
+use crate::support::{exertion_args, ok, refused, sample, text};
 
 /// The report of a run.
 fn told(words: &[&str], paths: &[(&str, &Path)]) -> Value {

@@ -1,12 +1,11 @@
 //! `mimique verify`: exit code 0 where all is right, 1 where a value is wrong, 2 where nothing can be
 //! computed; text and JSON.
 
-mod common;
-
 use std::path::Path;
 
-use common::{mimique, ok, refused, text};
 use serde_json::{Value, json};
+
+use crate::support::{mimique, ok, refused, text};
 
 /// A folder with one case of statistics: four numbers and their mean.
 fn folder(mean: f64) -> tempfile::TempDir {

@@ -1,14 +1,13 @@
 //! `mimique new`: every design and instrument gives a study that `check`, `simulate` and `analyze` take as it is; what
 //! cannot be is refused, and then nothing is there.
 
-mod common;
-
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use common::{ok, refused, sample, text};
 use serde_json::Value;
+
+use crate::support::{ok, refused, sample, text};
 
 const DESIGNS: [&str; 7] =
     ["rate-one", "compare-two", "all-pairs", "identify-emotion", "study1", "study2a", "study2b"];

@@ -1,13 +1,12 @@
 //! What errors, helps and documents tell people to type exists: every command and every option that they
 //! name.
 
-mod common;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use common::ok;
 use proc_macro2::{TokenStream, TokenTree};
+
+use crate::support::ok;
 
 /// Options that are not ours, by who has them.
 const OF_OTHERS: [&str; 23] = [

@@ -1,11 +1,10 @@
 //! `mimique exertion study`: the study that the repository has, designs of other factors, refusals.
 
-mod common;
-
-use common::{ok, refused, text};
 use mimique_stimulus::{Places, prepare};
 use mimique_study::{Study, TestName};
 use mimique_test_support::repository;
+
+use crate::support::{self, ok, refused, text};
 
 #[test]
 fn the_study_of_the_repository_is_what_is_written() {
@@ -150,7 +149,7 @@ fn designs_that_cannot_be_are_refused_and_nothing_is_written() {
         assert!(!out.exists(), "{words:?} wrote something");
     }
     let all = ["exertion", "study", "--activities", "swim", "--out", &text(&out)];
-    let said = common::mimique(&all);
+    let said = support::mimique(&all);
     assert_eq!(said.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&said.stderr).contains("use walk, run or sprint"));
 }

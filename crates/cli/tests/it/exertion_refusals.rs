@@ -1,11 +1,10 @@
 //! What `mimique exertion` refuses: with place, value and remedy, and without leaving anything behind.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{exertion_args, ok, refused, sample};
 use mimique_test_support::repository;
+
+use crate::support::{self, exertion_args, ok, refused, sample};
 
 #[test]
 fn a_refusal_leaves_nothing_behind() {
@@ -61,7 +60,7 @@ fn a_refusal_leaves_nothing_behind() {
 
 /// What clap refuses has exit code 2, too.
 fn refused_by_clap(all: &[String]) -> String {
-    let out = common::mimique(all);
+    let out = support::mimique(all);
     assert_eq!(out.status.code(), Some(2));
     String::from_utf8_lossy(&out.stderr).into_owned()
 }

@@ -1,15 +1,14 @@
 //! The guide says what the binary prints: every `console` block of its pages is run, in the order of the
 //! page, in a folder of its own that has the repository's study files and the guide's data.
 //!
-//! `TRYCMD=overwrite cargo nextest run --release -p mimique --test guide` writes what is printed into the
+//! `TRYCMD=overwrite cargo nextest run --release -p mimique --test it guide::` writes what is printed into the
 //! pages; look at the difference before you keep it. `[..]` stands for what differs from run to run.
-
-mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::copied;
 use mimique_test_support::real_file;
+
+use crate::support::copied;
 
 /// What a page's commands may name, from the repository's root.
 const THERE: [&str; 2] = ["study-config", "docs/guide/data"];

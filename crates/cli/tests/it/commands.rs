@@ -1,12 +1,11 @@
 //! The commands as a researcher types them: results, exit codes, errors, and nothing half written.
 
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::{mimique, ok, refused, text};
 use mimique_test_support::{real_file, repository};
 use serde_json::{Value, json};
+
+use crate::support::{mimique, ok, refused, text};
 
 /// Frame and weights by shape, of a CSV with a column `frame`.
 fn weights(csv: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {

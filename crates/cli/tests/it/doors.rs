@@ -1,15 +1,14 @@
 //! Weights of other programs in and out, animations of a GLB, and sequences of vertices.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{ok, refused, sample, solved_sample, text};
 use mimique_mocap::{
     Format, WeightOptions, WeightsTable, formats, npy_header, read_vertex_array, read_weights_file,
 };
 use mimique_test_support::real_file;
 use serde_json::Value;
+
+use crate::support::{ok, refused, sample, solved_sample, text};
 
 fn table(file: &Path) -> WeightsTable {
     read_weights_file(file, &WeightOptions::default()).expect("weights")

@@ -1,12 +1,11 @@
 //! `mimique annotate`: labels learnt, suggested and evaluated, from every kind of file; what is refused.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::path::Path;
 
-use common::{ok, refused, text};
 use serde_json::Value;
+
+use crate::support::{ok, refused, text};
 
 const RATE_HZ: f64 = 25.0;
 const SHAPES: [&str; 4] = ["jawOpen", "mouthSmileLeft", "browDownLeft", "eyeBlinkLeft"];

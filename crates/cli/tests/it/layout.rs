@@ -1,15 +1,14 @@
 //! Marker layouts as a researcher makes, checks and solves with them.
 
-mod common;
-
 use std::path::Path;
 
-use common::{ok, refused, text};
 use mimique_avatar_files::read_avatar;
 use mimique_geometry::Point;
 use mimique_mocap::{WeightOptions, read_weights_file};
 use mimique_stimulus::AvatarSkin;
 use serde_json::Value;
+
+use crate::support::{ok, refused, text};
 
 /// The files of `mimique sample`.
 fn sample(folder: &Path) {

@@ -1,15 +1,14 @@
 //! `mimique deposit`: the folder of the demonstration with simulated answers is whole by the rules of what it claims to be;
 //! what is personal is asked about, and secrets are nowhere.
 
-mod common;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use common::{files, ok, refused, sample, text};
 use mimique_test_support::repository;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
+
+use crate::support::{files, ok, refused, sample, text};
 
 /// Simulated answers to a study: the file of the export.
 fn answers(study: &Path, folder: &Path) -> PathBuf {

@@ -1,15 +1,14 @@
 //! `backup`, `restore`, `erase` as an operator types them: results, exit codes, errors that name the
 //! file, and nothing half written.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{ok, refused, text};
 use mimique_server::withdrawal_hash;
 use mimique_session::wire::Event;
 use mimique_storage::{NewSession, Storage, StudyVersion};
 use serde_json::{Value, json};
+
+use crate::support::{ok, refused, text};
 
 /// A database with two participants of three events each.
 struct Kept {

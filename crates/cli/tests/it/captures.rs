@@ -1,13 +1,12 @@
 //! Captures as a researcher repairs, cuts and solves them: repair, segment, the bank's diagnosis, and
 //! the two methods that need more than a bank.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{ok, refused, text};
 use mimique_test_support::real_file;
 use serde_json::Value;
+
+use crate::support::{self, ok, refused, text};
 
 /// The planted take of the real data.
 fn planted(test: &str) -> Option<PathBuf> {
@@ -208,7 +207,7 @@ fn a_folder_of_poses_takes_recorded_weights_and_stands_in_a_study() {
         "stimuli": {"avatars": {"mine": {"file": "head"}, "none": {"file": "nothing"}}},
     });
     std::fs::write(folder.path().join("study.json"), study.to_string()).expect("a study");
-    let said = common::mimique(&["check", &at("study.json")]);
+    let said = support::mimique(&["check", &at("study.json")]);
     let said = String::from_utf8_lossy(&said.stdout).into_owned();
     assert!(said.contains("/stimuli/avatars/none"), "{said}");
     assert!(!said.contains("/stimuli/avatars/mine/file"), "{said}");
@@ -299,7 +298,7 @@ fn segments_pasted_into_a_study_file_pass_its_check() {
     }
     let file = folder.path().join("study.json");
     std::fs::write(&file, &study).expect("the study");
-    let checked = common::mimique(&["check", &text(&file), "--without-clips", "--json"]);
+    let checked = support::mimique(&["check", &text(&file), "--without-clips", "--json"]);
     let said: Value = serde_json::from_slice(&checked.stdout).expect("JSON");
     // The files hold nothing, which is all that is wrong: nothing is wrong with the segments themselves.
     let issues = said["issues"].as_array().expect("a list");
@@ -311,7 +310,7 @@ fn segments_pasted_into_a_study_file_pass_its_check() {
     assert!(!errors.is_empty() && errors.iter().all(of_a_file), "{said}");
     // The check does look at them: a clip without frames is an error.
     std::fs::write(&file, study.replacen("\"end\"", "\"beyond\"", 1)).expect("the study");
-    assert_ne!(common::mimique(&["check", &text(&file)]).status.code(), Some(0));
+    assert_ne!(support::mimique(&["check", &text(&file)]).status.code(), Some(0));
 
     let error = refused(&["segment", &at("weights.csv"), "--study", "two words"]);
     assert!(error.contains("--study: \"two words\" is no identifier"), "{error}");

@@ -1,13 +1,12 @@
 //! `mimique arena` from end to end: methods of the solver on the built-in actor, simulated voters with planted worths in two
 //! laboratories, one of them with another head.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use common::{copied, ok, refused, text};
 use serde_json::Value;
+
+use crate::support::{copied, ok, refused, text};
 
 /// An arena with four methods, and its study.
 struct Place {

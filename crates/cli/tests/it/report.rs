@@ -1,12 +1,10 @@
 //! The folder that `mimique analyze` writes: figures as SVG and PDF, and links to the clips that they are of.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use common::{mimique, ok, text};
+use crate::support::{mimique, ok, text};
 
 fn demo() -> String {
     text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config/demo.json"))

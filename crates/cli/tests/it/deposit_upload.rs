@@ -3,8 +3,6 @@
 
 #![allow(clippy::result_large_err, reason = "answers of the mocks are both")]
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -16,10 +14,11 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
-use common::{files, ok, text};
 use md5::{Digest as _, Md5};
 use mimique_test_support::repository;
 use serde_json::{Value, json};
+
+use crate::support::{files, ok, text};
 
 const TOKEN: &str = "s3cretTokenOfNobody";
 

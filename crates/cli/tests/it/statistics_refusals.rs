@@ -1,11 +1,9 @@
 //! Files that are absent, empty, or of another kind: `test`, `analyze`, `simulate` and `power` name the
 //! file and the remedy, exit with 2 and write nothing.
 
-mod common;
-
 use std::path::Path;
 
-use common::refused;
+use crate::support::refused;
 
 fn study() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config/demo.json");

@@ -1,12 +1,11 @@
 //! The examples of deployment: their options are the binary's, their files what they say they are.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::process::Command;
 
-use common::{ok, text};
 use mimique_test_support::{python, repository, skip};
+
+use crate::support::{ok, text};
 
 fn example(name: &str) -> String {
     let path = repository().join("docs/guide/deployment").join(name);

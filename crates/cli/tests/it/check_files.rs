@@ -1,13 +1,12 @@
 //! `mimique check` opens the files: what is wrong with avatar, capture, map and segments is said at the first call,
 //! all at once, each at its place. The files are the sample's, made from the built-in head and actor.
 
-mod common;
-
 use std::path::Path;
 
-use common::{mimique, ok, refused, sample, text};
 use mimique_test_support::real_file;
 use serde_json::{Value, json};
+
+use crate::support::{mimique, ok, refused, sample, text};
 
 /// A study of a file's capture on a file's avatar, as it should be.
 fn study() -> Value {

@@ -1,5 +1,4 @@
 //! The binary, run to its end.
-#![allow(dead_code, reason = "each test file uses its part")]
 
 use std::collections::BTreeMap;
 use std::path::Path;

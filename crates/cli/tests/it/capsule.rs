@@ -1,14 +1,13 @@
 //! `mimique capsule`: what is in it, what stays out, the same bytes each time, and what is refused.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read as _};
 use std::path::{Path, PathBuf};
 
-use common::{mimique, ok, refused, text};
 use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
+
+use crate::support::{mimique, ok, refused, text};
 
 /// A small study of the built-in head, with a question that people answer in their own words.
 fn study(folder: &Path) -> PathBuf {
