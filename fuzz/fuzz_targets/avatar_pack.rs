@@ -2,7 +2,7 @@
 //! A fuzz target: any bytes as an avatar pack, and as the body of one.
 
 #[allow(dead_code)]
-#[path = "../../crates/avatar-files/tests/support/any_avatar.rs"]
+#[path = "../../crates/avatar-files/tests/it/support/any_avatar.rs"]
 mod any_avatar;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| any_avatar::consume(any_avatar::Kind::Pack, bytes));

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::Corpus;
 
-#[path = "../../crates/mocap/tests/support/invariants.rs"]
+#[path = "../../crates/mocap/tests/it/support/invariants.rs"]
 mod invariants;
 
 static FORMAT: LazyLock<Option<String>> = LazyLock::new(|| std::env::var("FUZZ_FORMAT").ok());

@@ -1,5 +1,5 @@
 // The orders kept in the repository (crates/study/tests/golden), drawn by WebAssembly in Chromium: seed, hash
-// of the configuration and participant give the same order as natively, where tests/golden_orders.rs draws
+// of the configuration and participant give the same order as natively, where tests/it/golden_orders.rs draws
 // them. Built as the page is, by `cargo xtask web`.
 
 import assert from "node:assert/strict";

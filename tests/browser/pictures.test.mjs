@@ -1,6 +1,6 @@
 // The same picture from the browser as from the offscreen stage: a head with a texture, and the
 // built-in head in a strong expression, drawn by both canvases, next to the golden pictures of
-// `crates/stage/tests/golden.rs`, same tolerances.
+// `crates/stage/tests/it/golden.rs`, same tolerances.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";

@@ -13,7 +13,7 @@
 //! own state machine, with the frames of its clips. The same study and number give the same answers.
 #![allow(clippy::print_stdout, reason = "it prints what it has stored")]
 
-#[path = "../tests/http/postgres.rs"]
+#[path = "../tests/it/postgres.rs"]
 #[allow(dead_code)]
 mod postgres;
 

@@ -13,10 +13,10 @@
 //! commit is on the disk before it is answered, as SQLite's are.
 #![allow(clippy::print_stdout, reason = "it prints what it has measured")]
 
-#[path = "../tests/http/postgres.rs"]
+#[path = "../tests/it/postgres.rs"]
 #[allow(dead_code)]
 mod postgres;
-#[path = "../tests/http/study.rs"]
+#[path = "../tests/it/study.rs"]
 #[allow(dead_code)]
 mod study;
 

@@ -3,8 +3,9 @@
 //! `cargo bench -p mimique-solver`; reads the real data as the tests do, one thread.
 #![allow(missing_docs)]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/it/support/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+mod support;
 
 use std::hint::black_box;
 
@@ -16,9 +17,9 @@ use mimique_solver::{
 
 fn take(c: &mut Criterion) {
     let Some(data) = mimique_test_support::real_data("benches") else { return };
-    let operators = common::operators(&data, &OperatorOptions::default());
+    let operators = support::operators(&data, &OperatorOptions::default());
     let avatar = &operators.parts().marker_positions;
-    let (frames, cells) = common::table(&data.join("lsts/take_n01.csv"), 2);
+    let (frames, cells) = support::table(&data.join("lsts/take_n01.csv"), 2);
     let metres: Vec<f64> = cells.iter().map(|x| x / 1000.0).collect();
     let take = MarkerFrames { positions: &metres, columns: 46 };
     let columns = MarkerColumns { face: (0..40).collect(), head: Some((40..46).collect()) };
@@ -48,7 +49,7 @@ fn take(c: &mut Criterion) {
         let fit = Fit::new(&operators, &spec).unwrap();
         group.bench_function(method.name(), |b| b.iter(|| black_box(fit.solve_take(&d).unwrap())));
     }
-    let (mesh, names) = common::skin(&data);
+    let (mesh, names) = support::skin(&data);
     let mut spec = MethodSpec::new(Method::Lsts);
     spec.alpha = Some(0.3);
     let weights = Fit::new(&operators, &spec).unwrap().solve_take(&d).unwrap().weights;
@@ -64,7 +65,7 @@ fn take(c: &mut Criterion) {
     });
     group.finish();
 
-    let markers = common::markers(&data, "face");
+    let markers = support::markers(&data, "face");
     let vertices: Vec<usize> = markers.iter().map(|m| m.1).collect();
     let mut group = c.benchmark_group("set-up");
     group.sample_size(10);

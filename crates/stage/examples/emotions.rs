@@ -1,7 +1,7 @@
 //! The contact sheet of the built-in head: neutral and six emotions at three intensities, from the
 //! front and three-quarter. `emotions OUT.png [CELL]`, with the cell's side in pixels (default 160).
 
-#[path = "../tests/support/sheet.rs"]
+#[path = "../tests/it/support/sheet.rs"]
 mod sheet;
 
 use mimique_stage::offscreen::Offscreen;

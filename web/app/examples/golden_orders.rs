@@ -1,10 +1,10 @@
 //! The orders of `crates/study/tests/golden`, drawn by the module of a browser:
 //! `tests/browser/order_bits.test.mjs` compares them with the files. A test, not a part of the page.
 
-#[path = "../../../crates/study/tests/support/golden.rs"]
+#[path = "../../../crates/study/tests/it/support/golden.rs"]
 mod golden;
 #[allow(dead_code)]
-#[path = "../../../crates/study/tests/support/small.rs"]
+#[path = "../../../crates/study/tests/it/support/small.rs"]
 mod small;
 
 use wasm_bindgen::prelude::wasm_bindgen;

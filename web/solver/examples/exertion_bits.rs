@@ -1,7 +1,7 @@
 //! The numbers of `crates/exertion/tests/golden/bits.txt`, computed by a browser's module:
 //! `tests/wasm/exertion_bits.mjs` compares them with the file. A test, not a part of the pages.
 
-#[path = "../../../crates/exertion/tests/support/bits.rs"]
+#[path = "../../../crates/exertion/tests/it/support/bits.rs"]
 mod bits;
 
 use wasm_bindgen::prelude::wasm_bindgen;

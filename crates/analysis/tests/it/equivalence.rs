@@ -1,0 +1,177 @@
+//! Hypotheses of equivalence from the study file to the report: verdicts on planted differences, the sentence, the
+//! table and the figure, power at a true difference of 0, and the preregistration.
+
+use mimique_analysis::{
+    Language, Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
+};
+use mimique_stats::{EquivalenceOptions, Numbers, Table, equivalence_of_pairs};
+use mimique_study::Study;
+use serde_json::Value;
+
+use crate::support::equivalence::equivalence;
+use crate::support::{Raters, demo_study, export, study_in_conditions};
+
+const METHODS: [&str; 2] = ["lsts", "box"];
+
+/// The demonstration with one hypothesis of equivalence.
+fn study(smallest: f64) -> Study {
+    let mut study = demo_study();
+    study.hypotheses = vec![equivalence("E1", "believability", "method", METHODS, smallest)];
+    study
+}
+
+fn report(study: &Study, people: usize, effect: f64, language: Language) -> Report {
+    let csv = export(study, &Raters { people, effect, seed: 9 });
+    analyze(&Table::parse(csv.as_bytes()).unwrap(), study, language).unwrap()
+}
+
+fn file<'r>(report: &'r Report, path: &str) -> &'r str {
+    &report.files.iter().find(|file| file.path == path).unwrap().text
+}
+
+fn hypothesis(report: &Report) -> Value {
+    let results: Value = serde_json::from_str(file(report, "results.json")).unwrap();
+    results["hypotheses"][0].clone()
+}
+
+#[test]
+fn verdicts_follow_the_difference_that_was_planted() {
+    for (people, effect, smallest, verdict, words) in [
+        (60, 0.0, 0.5, "equivalent", "are equivalent: they differ by less than 0.5 points"),
+        (60, 1.5, 0.5, "different", "differ, and that by less than 0.5 points"),
+        (60, 1.0, 2.0, "different-but-small", "differ, but by less than 2 points"),
+        (5, 0.0, 0.1, "undecided", "undecided: neither"),
+    ] {
+        let found = hypothesis(&report(&study(smallest), people, effect, Language::English));
+        assert_eq!(found["equivalence"]["decides"]["verdict"], verdict, "{found}");
+        assert_eq!(found["equivalence"]["beside"]["verdict"], verdict, "{found}");
+        let reading = found["reading"].as_str().unwrap();
+        assert!(reading.contains(words), "{reading}");
+        assert!(reading.contains("Beside it two one-sided paired t tests"), "{reading}");
+        // What decides goes into the correction over all hypotheses.
+        assert_eq!(found["p"], found["equivalence"]["decides"]["line"]["p_value"]);
+    }
+}
+
+#[test]
+fn it_is_the_test_of_person_means_and_stands_in_table_and_figure() {
+    let study = study(0.5);
+    let csv = export(&study, &Raters { people: 20, effect: 0.2, seed: 9 });
+    let table = Table::parse(csv.as_bytes()).unwrap();
+    let report = analyze(&table, &study, Language::French).unwrap();
+    let found = hypothesis(&report);
+    // The means of each person once more, from the export alone.
+    let column = |name: &str| table.names().iter().position(|own| own == name);
+    let [person, method, response, answer, late, frames] =
+        ["participant", "method", "response_id", "answer", "frames_late", "frames"]
+            .map(|name| column(name).unwrap());
+    let mut sums = std::collections::BTreeMap::new();
+    for row in 0..table.rows() {
+        let cell = |at: usize| table.cell(row, at).unwrap_or_default();
+        let number = |at: usize| cell(at).parse::<f64>().unwrap();
+        // The study leaves trials with many late frames out.
+        if cell(response) != "believability" || number(late) > 0.2 * number(frames) {
+            continue;
+        }
+        let sign = usize::from(cell(method) == "box");
+        let own: &mut [[f64; 2]; 2] = sums.entry(cell(person).to_owned()).or_default();
+        own[sign][0] += number(answer);
+        own[sign][1] += 1.0;
+    }
+    let used = found["equivalence"]["people"][0].as_u64().unwrap() as usize;
+    let differences: Vec<f64> = sums.values().map(|[a, b]| a[0] / a[1] - b[0] / b[1]).collect();
+    assert!(differences.len() - used <= 1, "{used} of {}", differences.len());
+    if used == differences.len() {
+        let numbers = Numbers { name: "d".to_owned(), values: differences };
+        let own = equivalence_of_pairs(&numbers, &EquivalenceOptions::smallest_effect(0.5));
+        let own = own.unwrap().wilcoxon.ok().unwrap();
+        let p = found["p"].as_f64().unwrap();
+        assert!((own.p - p).abs() < 1e-12, "{} {p}", own.p);
+    }
+    let zone = file(&report, "tables/figure-hypothesis-e1-zone.csv");
+    assert_eq!(zone.lines().count(), 3, "{zone}");
+    assert!(zone.contains("zone bas") && zone.contains("différence médiane"), "{zone}");
+    assert!(file(&report, "figures/hypothesis-e1-zone.svg").contains("La zone va de −0,5 à 0,5"));
+    let table = file(&report, "tables/hypothesis-e1-equivalence.csv");
+    assert!(table.contains("deux tests unilatéraux des rangs signés"), "{table}");
+}
+
+#[test]
+fn groups_of_people_are_compared_by_rank_sums() {
+    let mut study = study_in_conditions();
+    let groups = ["rested", "at-once"];
+    let factor = "assigned_condition";
+    study.hypotheses = vec![equivalence("E1", "believability", factor, groups, 0.5)];
+    let found = hypothesis(&report(&study, 61, 0.0, Language::English));
+    let people = &found["equivalence"]["people"];
+    assert_eq!((people[0].as_u64(), people[1].as_u64()), (Some(20), Some(20)), "{found}");
+    assert_eq!(found["equivalence"]["within_people"], false);
+    assert!(found["equivalence"]["beside"]["interval_90"].is_array());
+    assert!(found["reading"].as_str().unwrap().contains("Welch"), "{found}");
+}
+
+#[test]
+fn without_a_smallest_effect_nothing_is_tested() {
+    let mut study = study(0.5);
+    study.hypotheses[0].smallest_effect = None;
+    let found = hypothesis(&report(&study, 8, 0.0, Language::English));
+    assert_eq!(found["p"], Value::Null);
+    assert!(found["reading"].as_str().unwrap().contains("smallestEffect"), "{found}");
+}
+
+#[test]
+fn power_is_that_at_no_difference_and_is_preregistered() {
+    let mut study = study(1.0);
+    let mut parameters = Parameters::for_study(&study);
+    let options = |smallest_people: usize| PowerOptions {
+        participants: vec![smallest_people],
+        clips: Vec::new(),
+        runs: 40,
+        seed: 1,
+        alpha: 0.05,
+        false_positives: false,
+        mixed: false,
+    };
+    // However far apart the methods are in the parameters, the power is at no difference.
+    let found = power(&study, "hash", &parameters, &options(30), &|| {}).unwrap();
+    let first = &found.points[0].hypotheses[0];
+    assert!(first.effect && first.false_positives.is_none());
+    assert!(first.power.recommended.share > 0.8, "{:?}", first.power.recommended);
+    parameters.ratings.get_mut("believability").unwrap().effects.clear();
+    let without = power(&study, "hash", &parameters, &options(30), &|| {}).unwrap();
+    assert_eq!(without.points[0].hypotheses[0].power, first.power);
+    // A zone that is hardly wider than chance needs more people.
+    study.hypotheses[0].smallest_effect = Some(0.05);
+    let narrow = power(&study, "hash", &parameters, &options(8), &|| {}).unwrap();
+    assert!(narrow.points[0].hypotheses[0].power.recommended.share < 0.2);
+    for (language, words) in [
+        (
+            Language::English,
+            [
+                "smallest difference that matters: 0.05, because: nobody sees it",
+                "decides: two one-sided signed rank tests on one mean a person",
+                "within the zone",
+            ],
+        ),
+        (
+            Language::French,
+            [
+                "plus petite différence qui compte : 0,05, car : personne ne le voit",
+                "décide : deux tests unilatéraux des rangs signés sur une moyenne par personne",
+                "dans la zone",
+            ],
+        ),
+    ] {
+        let text = preregistration(&Preregistration {
+            study: &study,
+            config_hash: "hash",
+            power: &narrow,
+            parameters: &parameters,
+            language,
+            curve: None,
+        });
+        for words in words {
+            assert!(text.contains(words), "{words}: {text}");
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! The integration tests of `mimique-avatar`, in one binary.
+
+mod pack;

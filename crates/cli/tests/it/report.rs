@@ -1,0 +1,87 @@
+//! The folder that `mimique analyze` writes: figures as SVG and PDF, and links to the clips that they are of.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::support::{mimique, ok, text};
+
+fn demo() -> String {
+    text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config/demo.json"))
+}
+
+/// Answers of simulated people, and a table of stimuli with a measure of a laboratory's own.
+fn answers(folder: &Path) -> [String; 2] {
+    let simulated = text(&folder.join("simulated"));
+    ok(&["simulate", &demo(), "-n", "8", "--seed", "1", "--out", &simulated]);
+    let export = folder.join("simulated/demo_responses.csv");
+    let mut reader = csv::Reader::from_path(&export).unwrap();
+    let place = reader.headers().unwrap().iter().position(|name| name == "stimulus").unwrap();
+    let clips: BTreeSet<String> =
+        reader.records().map(|row| row.unwrap()[place].to_owned()).collect();
+    let mut table = "stimulus,mean_speed\n".to_owned();
+    for (number, clip) in clips.iter().filter(|clip| !clip.is_empty()).enumerate() {
+        writeln!(table, "{clip},{}", 3 * number % 7).unwrap();
+    }
+    let stimuli = folder.join("stimuli.csv");
+    std::fs::write(&stimuli, table).unwrap();
+    [text(&export), text(&stimuli)]
+}
+
+#[test]
+fn every_figure_stands_there_as_svg_and_as_pdf() {
+    let folder = tempfile::tempdir().unwrap();
+    let [export, _] = answers(folder.path());
+    let out = folder.path().join("report");
+    let told = ok(&["--json", "analyze", &export, "--study", &demo(), "--out", &text(&out)]);
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let listed: BTreeSet<&str> =
+        told["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
+    let mut figures = 0;
+    for file in std::fs::read_dir(out.join("figures")).unwrap() {
+        let svg = file.unwrap().path();
+        if svg.extension().is_none_or(|kind| kind != "svg") {
+            continue;
+        }
+        let pdf = svg.with_extension("pdf");
+        let name = pdf.file_name().unwrap().to_str().unwrap();
+        assert!(listed.contains(&*format!("figures/{name}")), "{name} in {listed:?}");
+        let read = lopdf::Document::load(&pdf).unwrap();
+        assert_eq!(read.get_pages().len(), 1, "{name}");
+        let words = read.extract_text(&[1]).unwrap();
+        assert!(words.chars().filter(|c| c.is_alphanumeric()).count() > 10, "{name}: {words}");
+        figures += 1;
+    }
+    assert!(figures > 10, "{figures}");
+}
+
+#[test]
+fn points_lead_to_the_preview_that_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let [export, stimuli] = answers(folder.path());
+    let out = folder.path().join("report");
+    let study = demo();
+    let analyze = |more: &[&str]| {
+        let out = text(&out);
+        let mut args = vec!["analyze", &export, "--study", &study, "--stimuli", &stimuli];
+        args.extend(["--out", &out]);
+        args.extend(more);
+        mimique(&args)
+    };
+    let preview = "http://lab.example/preview/demo";
+    let links = || {
+        let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+        page.matches(&format!("href=\"{preview}?clip=")).count()
+    };
+    assert!(analyze(&["--preview-url", &format!("{preview}/")]).status.success());
+    assert!(links() >= 12, "{}", links());
+    assert!(analyze(&[]).status.success());
+    assert_eq!(links(), 0, "without an address nothing leads anywhere");
+    for wrong in ["lab.example/preview/demo", "javascript:alert(1)", "http://a/preview/demo?clip=x"]
+    {
+        let refused = analyze(&["--preview-url", wrong]);
+        assert_eq!(refused.status.code(), Some(2), "{wrong}");
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(said.contains(wrong) && said.contains("give the whole address"), "{said}");
+    }
+}

@@ -1,0 +1,4 @@
+//! The integration tests of `mimique-clip`, in one binary.
+
+mod gaze;
+mod packs;

@@ -1,0 +1,4 @@
+//! The integration tests of `mimique-comparison`, in one binary.
+
+mod motions;
+mod studies;

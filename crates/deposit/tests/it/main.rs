@@ -1,0 +1,3 @@
+//! The integration tests of `mimique-deposit`, in one binary.
+
+mod planted;

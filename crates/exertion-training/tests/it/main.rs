@@ -1,0 +1,3 @@
+//! The integration tests of `mimique-exertion-training`, in one binary.
+
+mod lessons;

@@ -1,7 +1,0 @@
-//! The studies of `study-config`, and small ones.
-#![allow(dead_code, unused_imports)]
-
-pub mod golden;
-pub mod small;
-
-pub use mimique_test_support::{study_folder, study_text};

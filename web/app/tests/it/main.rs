@@ -1,0 +1,3 @@
+//! The integration tests of `mimique-app`, in one binary.
+
+mod nothing_lost;

@@ -1,0 +1,3 @@
+//! The integration tests of `mimique-web-report`, in one binary.
+
+mod node_report;
