@@ -10,7 +10,8 @@ mod simulated;
 
 use std::collections::BTreeMap;
 
-use mimique_analysis::{Language, Parameters, PowerOptions, Simulation, power};
+use mimique_analysis::{Parameters, PowerOptions, Simulation, power};
+use mimique_locale::Language;
 use mimique_study::Study;
 use preregistered::preregistered;
 use results::{careful, report, text};

@@ -4,7 +4,8 @@
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
-use mimique_analysis::{Language, analyze};
+use mimique_analysis::analyze;
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{CompositeScale, Study};
 use mimique_test_support::Random;

@@ -15,7 +15,8 @@ mod simulated;
 use std::process::Command;
 
 use followed::{followed, followers};
-use mimique_analysis::{Language, Parameters, Report, Simulation, analyze};
+use mimique_analysis::{Parameters, Report, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use rerun::{compare, write};

@@ -6,7 +6,8 @@ mod planted;
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
-use mimique_analysis::{Language, Report, analyze};
+use mimique_analysis::{Report, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_test_support::Random;
 use planted::{answered, export_of_passes};

@@ -9,8 +9,9 @@ mod hypothesis_of;
 
 use hypothesis_of::equivalence;
 use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
+    Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
 };
+use mimique_locale::Language;
 use mimique_stats::{EquivalenceOptions, Numbers, Table, equivalence_of_pairs};
 use mimique_study::Study;
 use serde_json::Value;

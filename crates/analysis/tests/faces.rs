@@ -6,7 +6,8 @@ mod results;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{FacePart, Language, Parameters, Simulation};
+use mimique_analysis::{FacePart, Parameters, Simulation};
+use mimique_locale::Language;
 use mimique_study::Study;
 use results::{careful, report, text};
 use serde_json::Value;

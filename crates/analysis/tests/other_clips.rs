@@ -8,7 +8,8 @@ mod preregistered;
 #[expect(dead_code, reason = "other tests take the other studies")]
 mod support;
 
-use mimique_analysis::{Language, Parameters, PowerOptions, analyze, power};
+use mimique_analysis::{Parameters, PowerOptions, analyze, power};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Generalise, Severity, Study};
 use mimique_test_support::Random;

@@ -5,7 +5,8 @@ mod preregistered;
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_analysis::{Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use preregistered::preregistered;

@@ -10,7 +10,8 @@ mod support;
 
 use std::collections::BTreeSet;
 
-use mimique_analysis::{Language, Parameters, Simulation, analyze};
+use mimique_analysis::{Parameters, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Hypothesis, Study};
 use serde_json::json;

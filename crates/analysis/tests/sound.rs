@@ -3,7 +3,8 @@
 #[path = "support/simulated.rs"]
 mod simulated;
 
-use mimique_analysis::{Language, Parameters, Simulation, analyze};
+use mimique_analysis::{Parameters, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Study, config_hash, parse};
 use mimique_test_support::study_text;

@@ -8,7 +8,8 @@ mod simulated;
 use std::collections::{BTreeMap, HashMap};
 
 use followed::{followed, followed_with, followers, speeded};
-use mimique_analysis::{Language, Parameters, ReportOptions, Simulation, analyze_with};
+use mimique_analysis::{Parameters, ReportOptions, Simulation, analyze_with};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;
