@@ -5,7 +5,8 @@
 
 use std::time::Instant;
 
-use mimique_analysis::{Language, analyze};
+use mimique_analysis::analyze;
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 

@@ -34,8 +34,8 @@ mod agreement;
 mod choices;
 mod faces;
 mod hypothesis;
-mod language;
 mod mimicry;
+mod naming;
 mod power;
 mod preregistration;
 mod report;
@@ -44,27 +44,13 @@ mod simulate;
 mod thresholds;
 mod trials;
 
-/// What reports are made of: blocks of a document, tables, figures. Reports of other things than a
-/// study (`mimique annotate evaluate`) are made of the same.
-pub mod components {
-    pub use crate::report::document::{
-        Block, DataTable, DecisionTable, Document, Figure, RowEffects, slug,
-    };
-    pub use crate::report::document_files;
-    pub use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
-    pub use crate::report::figure::{
-        ConfusionRow, ConfusionWords, CoursePanel, Ranked, confusion_matrix, ranking, time_courses,
-    };
-}
-
-pub use language::Language;
 pub use power::{
     BlockPrecision, Columns, Estimand, HypothesisPower, Power, PowerError, PowerOptions,
     PowerPoint, PrecisionPoint, Rate, no_effect, power, power_csv, power_curve, power_markdown,
     power_runs, precision_csv, precision_markdown,
 };
 pub use preregistration::{Preregistration, as_predicted, preregistration};
-pub use report::{MeasuredFaces, Report, ReportFile, ReportOptions, analyze, analyze_with};
+pub use report::{MeasuredFaces, Report, ReportOptions, analyze, analyze_with};
 pub use simulate::{
     ByLevel, Careless, Compared, Discrimination, Display, Dropout, FacePart, FaceTemplates,
     Interaction, NumberAnswer, PairChoices, Parameters, ParametersError, PerceivedScale, Rating,

@@ -6,10 +6,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use mimique_analysis::{ExportError, Language, MeasuredFaces, ReportOptions, analyze_with};
+use mimique_analysis::{ExportError, MeasuredFaces, ReportOptions, analyze_with};
+use mimique_locale::{Language, counted, counted_as};
 use mimique_stats::Table;
 use mimique_study::Study;
-use mimique_study::text::{counted, counted_as};
 
 use crate::report_folder;
 

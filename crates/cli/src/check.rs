@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_comparison::{ClipDifference, StudyComparison, compare_clips};
+use mimique_locale::counted;
 use mimique_stimulus::{
     ADVISED_SMOOTHING, AdvisedMethod, Places, PrepareError, Prepared, SoundError, StudySound,
     advised_methods, prepare, source_faults, study_sounds,
 };
-use mimique_study::text::{counted, template};
+use mimique_study::text::template;
 use mimique_study::{
     Issue, Problem, Report, Severity, Study, check, check_opened, json_schema, resolve_path,
 };

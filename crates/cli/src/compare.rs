@@ -9,12 +9,12 @@ use mimique_comparison::{
     ComparedFace, Difference, FaceMotion, MarkerCorrelation, Measures, difference,
     marker_correlation, measures, median_correlation,
 };
+use mimique_locale::counted;
 use mimique_mocap::{CaptureFile, ReadOptions, WeightOptions, WeightsTable};
 use mimique_solver::{Method, MethodSpec};
 use mimique_stimulus::{
     AvatarSkin, JoinedTake, MarkerMap, RecordedWeights, TakeOptions, read_performance,
 };
-use mimique_study::text::counted;
 use serde::Serialize;
 
 use crate::output;

@@ -12,12 +12,13 @@ mod values;
 use std::path::Path;
 
 use anyhow::{anyhow, bail};
-use mimique_analysis::components::{document_files, time_courses};
-use mimique_analysis::{Language, ReportFile};
 use mimique_exertion::{
     Clip, Expression, ExpressionModel, Face, Series, ShapeTable, Start, Window,
 };
+use mimique_locale::Language;
 use mimique_mocap::{WeightOptions, WeightsTable};
+use mimique_report::figure::time_courses;
+use mimique_report::{ReportFile, document_files};
 use mimique_stimulus::{ExertionTake, read_performance, sha256_of_file};
 
 pub use self::args::Args;

@@ -8,9 +8,10 @@ use std::time::Duration;
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_analysis::{
-    Language, Power, PowerOptions, Preregistration, as_predicted, no_effect, power, power_csv,
-    power_curve, power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
+    Power, PowerOptions, Preregistration, as_predicted, no_effect, power, power_csv, power_curve,
+    power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
 };
+use mimique_locale::Language;
 
 use crate::output;
 use crate::simulate::Assumptions;

@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
+use mimique_locale::counted;
 use mimique_mocap::{Capture, CaptureFile, GapFill, LowPass, RepairPlan, Repaired, stillest};
 use mimique_stimulus::{FileHash, RepairSidecar, sidecar_path};
-use mimique_study::text::counted;
 use serde_json::json;
 
 use crate::capture_options::CaptureOptions;

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use mimique_analysis::ReportFile;
+use mimique_report::ReportFile;
 use mimique_storage::durable_file;
 
 /// Writes the files of a report into `out`, in the place of an earlier one, and gives their paths. A figure that

@@ -5,11 +5,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
+use mimique_locale::counted;
 use mimique_stimulus::{
     Channels, EafAnnotation, EafDocument, EafSegments, LeftOut, SuggestOptions, TakeSegment, cut,
     read_segments, study_segments, suggest, write_segments,
 };
-use mimique_study::text::counted;
 use serde_json::json;
 
 use crate::border_options::{BorderOptions, Rule};

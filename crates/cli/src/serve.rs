@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
+use mimique_locale::counted;
 use mimique_server::{
     Access, App, Assets, HostedStudy, Hosting, Network, PackStore, Settings, Stage, prepare_hosting,
 };
 use mimique_stimulus::Places;
 use mimique_storage::{Storage, durable_file};
-use mimique_study::text::counted;
 use mimique_study::{MEDIA_PREFIX, Severity};
 use serde_json::json;
 use tokio::net::TcpListener;

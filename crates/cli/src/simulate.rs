@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use mimique_analysis::{Parameters, SimulatedSession, Simulation};
+use mimique_locale::counted;
 use mimique_server::export::{Exported, Format, Unstored};
 use mimique_stats::Table;
 use mimique_stimulus::{Places, prepare};
-use mimique_study::text::counted;
 use mimique_study::{ClipSource, Study};
 
 use crate::output;

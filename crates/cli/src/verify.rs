@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use mimique_study::text::counted;
+use mimique_locale::counted;
 use mimique_verify::{Case, Checked, verify};
 
 /// Wrong values of a case that the text shows; `--json` has all.

@@ -87,7 +87,7 @@ fn facts(about: &About) -> Markup {
 
 fn section(folder: &str, words: &str, files: &[&DepositFile]) -> Markup {
     let bytes: u64 = files.iter().map(|file| file.bytes).sum();
-    let count = mimique_study::text::counted(files.len(), "file");
+    let count = mimique_locale::counted(files.len(), "file");
     html! {
         section lang="en" {
             h2 { (folder) }
@@ -115,7 +115,7 @@ fn item(file: &DepositFile) -> Markup {
 /// A size for people.
 fn size(bytes: u64) -> String {
     match bytes {
-        0..1_000 => mimique_study::text::counted(bytes as usize, "byte"),
+        0..1_000 => mimique_locale::counted(bytes as usize, "byte"),
         1_000..1_000_000 => format!("{:.1} KB", bytes as f64 / 1e3),
         _ => format!("{:.1} MB", bytes as f64 / 1e6),
     }

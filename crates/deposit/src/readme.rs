@@ -1,6 +1,6 @@
 //! `README.md` and `LICENSE.md`: what people read first.
 
-use mimique_study::text::counted_as;
+use mimique_locale::counted_as;
 
 use crate::about::{About, SOFTWARE_LICENCE, SOFTWARE_REPOSITORY, SOFTWARE_VERSION};
 use crate::author::Author;

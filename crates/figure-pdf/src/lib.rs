@@ -11,7 +11,7 @@ use krilla::geom::Size;
 use krilla::metadata::Metadata;
 use krilla::page::PageSettings;
 use krilla_svg::{SurfaceExt, SvgSettings};
-use mimique_analysis::ReportFile;
+use mimique_report::ReportFile;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use usvg::{Group, Node, Tree, fontdb, roxmltree};
 
@@ -148,7 +148,7 @@ fn collect_missing(group: &Group, missing: &mut BTreeSet<String>) {
 #[cfg(test)]
 mod tests {
     use lopdf::{Document as Read, Object};
-    use mimique_analysis::components::{Anchor, Svg};
+    use mimique_report::svg::{Anchor, Svg};
 
     use super::*;
 

@@ -1,5 +1,6 @@
 //! P-values corrected for the number of comparisons, as R's `p.adjust`.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::outcome::Outcome;
@@ -8,7 +9,6 @@ use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::Refusal;
 use crate::table::Table;
-use crate::words::format_number;
 
 /// A correction for several comparisons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]

@@ -29,7 +29,6 @@ mod summary;
 mod table;
 mod test;
 mod undefined;
-mod words;
 
 pub use adjust::{AdjustedP, Adjustment, adjust_all};
 pub use distributions::tail::{
@@ -114,4 +113,3 @@ pub use test::spearman::{Spearman, bonett_wright_interval, spearman};
 pub use test::thurstone::{Thurstone, thurstone};
 pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
 pub use undefined::{NoEstimate, Undefined};
-pub use words::{format_number, format_p};

@@ -4,8 +4,8 @@ use std::fmt;
 use std::ops::Range;
 
 use mimique_clip::FramesWarning;
+use mimique_locale::counted;
 use mimique_solver::HEAD_LOWPASS_HZ;
-use mimique_study::text::counted;
 use serde::{Serialize, Serializer};
 
 use crate::checks::{GazeFault, HeadMarker, LabelProblem, SmoothingAdvice};

@@ -9,7 +9,8 @@
 //! report.summary();           // {"people": [used, all], "trials": 480, "readings": [["H1", "..."]]}
 //! ```
 
-use mimique_analysis::{Language, Report, ReportOptions, analyze_with};
+use mimique_analysis::{Report, ReportOptions, analyze_with};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::json;

@@ -1,11 +1,11 @@
 //! What the report says of agreement and of scales.
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{
     AlphaEstimate, Cronbach, IccForm, IntraclassCorrelation, MeasurementLevel as Level, Outcome,
 };
 
 use super::{Agreement, ScaleConsistency, agreement, consistencies};
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::Measure;
@@ -114,7 +114,7 @@ impl Writer<'_> {
         match &own.icc {
             Some(Outcome::Ok(icc)) => sentences.push(self.icc_reading(icc)),
             Some(Outcome::Undefined { reason }) => {
-                let reason = language.why_undefined(reason);
+                let reason = reason.words(language);
                 sentences.push(language.pick(
                     format!("The ICC is undefined ({reason})."),
                     format!("L’ICC n’est pas défini ({reason})."),
@@ -125,7 +125,7 @@ impl Writer<'_> {
         sentences.push(match &own.krippendorff {
             Outcome::Ok(found) => self.alpha_reading(found),
             Outcome::Undefined { reason } => {
-                let reason = language.why_undefined(reason);
+                let reason = reason.words(language);
                 language.pick(
                     format!("Krippendorff’s alpha is undefined ({reason})."),
                     format!("L’alpha de Krippendorff n’est pas défini ({reason})."),
@@ -216,7 +216,7 @@ impl Writer<'_> {
         let found = match &scale.cronbach {
             Outcome::Ok(found) => found,
             Outcome::Undefined { reason } => {
-                let reason = language.why_undefined(reason);
+                let reason = reason.words(language);
                 return language.pick(
                     format!("{name}: Cronbach’s alpha is undefined ({reason})."),
                     format!("{name} : l’alpha de Cronbach n’est pas défini ({reason})."),

@@ -1,11 +1,11 @@
 //! Choices between the levels of a factor in plain words.
 
+use mimique_locale::Language;
 use mimique_stats::{Outcome, WorthContrast, WorthEstimates};
 
 use super::tested::ChoiceTests;
 use crate::hypothesis::test_line::{TestLine, Unit};
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 
 /// The level of a test.
 const LEVEL: f64 = 0.05;

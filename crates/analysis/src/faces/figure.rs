@@ -1,10 +1,10 @@
 //! Figures of reverse correlation: an image of units by times, and the face that people have in mind.
 
+use mimique_report::figure::LINES;
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH, diverging};
 use mimique_stats::{GroupImage, UnitCourse};
 
 use super::played::{DrawnHead, PlayedWords};
-use crate::report::figure::LINES;
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, diverging};
 
 const LEFT: f64 = 70.0;
 const RIGHT: f64 = WIDTH - 12.0;

@@ -2,9 +2,8 @@
 
 use mimique_actor::{Density, FaceLine, FaceLinePart, HeadSpec, build_head, face_lines};
 use mimique_avatar::{ActionUnit, Avatar};
+use mimique_report::svg::{Anchor, Moving, Svg, WIDTH};
 use mimique_stats::UnitCourse;
-
-use crate::report::figure::svg::{Anchor, Moving, Svg, WIDTH};
 
 /// Key frames of the moving face: between them browsers interpolate.
 const KEY_FRAMES: usize = 16;

@@ -1,11 +1,11 @@
 //! What the report says of blocks of reverse correlation.
 
+use mimique_report::document::{Block, DataTable, Figure, slug};
 use mimique_stats::{CategoryImages, GroupImage, UnitCourse};
 
 use super::figure::{ImageWords, face, image};
 use super::played::{DrawnHead, PlayedWords};
 use super::{BlockImages, FoundImages, LEVEL, PERMUTATIONS, images, is_present};
-use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
 
 impl Writer<'_> {

@@ -7,7 +7,7 @@ use super::{HypothesisResult, Read, deciding_p, not_tested};
 use crate::choices::{answers, reading, tested};
 use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::trial_level::TrialLevel;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::trials::export::Export;
 use crate::trials::measure::MeasureKind;
 

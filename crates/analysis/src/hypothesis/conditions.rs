@@ -6,7 +6,7 @@ use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{Hypothesis, Study};
 use serde::Serialize;
 
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::trials::export::Export;
 use crate::trials::measure::{Measure, MeasureKind};
 

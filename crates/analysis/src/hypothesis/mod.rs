@@ -15,6 +15,7 @@ pub(crate) mod trial_level;
 pub(crate) mod two_way;
 pub(crate) mod undefined;
 
+use mimique_locale::Language;
 use mimique_stats::{Factor, Labelled};
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
@@ -29,8 +30,7 @@ use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
 use crate::hypothesis::trial_level::TrialLevel;
 use crate::hypothesis::undefined::TestOutcome;
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 use crate::trials::measure::{Measure, MeasureKind, as_numbers};

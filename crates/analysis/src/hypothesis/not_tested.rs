@@ -1,8 +1,7 @@
 //! Why a hypothesis cannot be tested, and the words for it.
 
+use mimique_locale::Language;
 use mimique_study::AnswerOfPair;
-
-use crate::language::Language;
 
 /// Why a hypothesis cannot be tested.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! Why a line of a table of tests has no numbers: codes with values; their words in both languages.
 
+use mimique_locale::Language;
 use mimique_stats::{Outcome, Refusal, Undefined};
 use serde::{Serialize, Serializer};
 
 use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::test_line::TestLine;
-use crate::language::Language;
 
 /// A line of a table of tests, or why it has no numbers.
 pub(crate) type TestOutcome = Outcome<TestLine, Why>;
@@ -27,7 +27,7 @@ impl Why {
     /// In the middle of a sentence.
     pub(crate) fn words(&self, language: Language) -> String {
         match self {
-            Self::Statistic(undefined) => language.why_undefined(undefined),
+            Self::Statistic(undefined) => undefined.words(language),
             Self::NotTested(why) => why.words(language),
             Self::NoMatchedTrials => language
                 .pick(

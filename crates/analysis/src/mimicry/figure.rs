@@ -1,11 +1,10 @@
 //! The curve of mean correlations by lag, with its interval and the band of the surrogates.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::LINES;
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH};
 use mimique_stats::LaggedCorrelation;
-
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::LINES;
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 12.0;

@@ -1,11 +1,11 @@
 //! What the report says of mimicry.
 
+use mimique_locale::Language;
+use mimique_report::document::{Block, DataTable};
 use mimique_stats::Surrogates;
 
 use super::figure::curve;
 use super::{FoundMimicry, LeftOut, MimicryResult, mimicry};
-use crate::language::Language;
-use crate::report::document::{Block, DataTable};
 use crate::report::section::Writer;
 
 impl Writer<'_> {

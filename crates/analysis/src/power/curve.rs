@@ -1,8 +1,9 @@
 //! Power against the number of people, as a figure: a panel a hypothesis and number of clips.
 
+use mimique_locale::Language;
+use mimique_report::svg::{Anchor, Axis, Svg};
+
 use super::{Columns, HypothesisPower, Power, PowerPoint, Rate};
-use crate::language::Language;
-use crate::report::figure::svg::{Anchor, Axis, Svg};
 
 const PANEL: f64 = 190.0;
 const HEAD: f64 = 58.0;

@@ -17,6 +17,7 @@ mod precision;
 mod precision_table;
 mod table;
 
+use mimique_locale::Language;
 use mimique_stats::{Adjustment, Outcome, proportion};
 use mimique_study::{Hypothesis, OrderError, Problem, Study, TestName};
 use rayon::prelude::*;
@@ -26,8 +27,7 @@ use crate::hypothesis::other_clips::OtherClipsTests;
 use crate::hypothesis::test_line::OutcomeP;
 use crate::hypothesis::undefined::TestOutcome;
 use crate::hypothesis::{is_two_way, of_pair, test_hypothesis};
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::simulate::{Draws, Model, Parameters, ParametersError};
 pub use curve::power_curve;
 use design::Design;

@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_report::document::csv_text;
 use mimique_session::rows::{SessionRecord, tidy};
 use mimique_stats::{Outcome, Table, UnitImage, describe, normal_quantile_upper};
 use mimique_study::{Component, Study};
@@ -14,7 +15,6 @@ use serde_json::Value;
 use super::given::text;
 use super::{PowerError, PowerOptions, run_seed};
 use crate::faces::{images, is_present};
-use crate::report::document::csv_text;
 use crate::scaling::scales;
 use crate::simulate::{Parameters, SimulatedSession, Simulation, threshold};
 use crate::thresholds::{Threshold, thresholds};

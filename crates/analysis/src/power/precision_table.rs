@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
+use mimique_locale::Language;
+use mimique_report::document::csv_text;
+
 use super::{BlockPrecision, Estimand, Power};
-use crate::language::Language;
-use crate::report::document::csv_text;
 
 /// One row a block, number of trials and number of people.
 pub fn precision_csv(power: &Power) -> String {

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
+use mimique_locale::Language;
+use mimique_report::document::csv_text;
+
 use super::precision_table::precision_markdown;
 use super::{Columns, HypothesisPower, Power, PowerPoint, Rate};
-use crate::language::Language;
-use crate::report::document::csv_text;
 
 /// One row a number of people, number of clips and hypothesis.
 pub fn power_csv(power: &Power) -> String {

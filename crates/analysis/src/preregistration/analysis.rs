@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use mimique_locale::Language;
 use mimique_stats::{
     ChiSquare, EquivalenceOfGroups, Friedman, KruskalWallis, MannWhitney, MixedModel,
     ScheirerRayHare, Sign, Spearman, TestNames, TestResult, WORTHS_RATIO, Wilcoxon,
@@ -10,8 +11,7 @@ use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
 
 use super::{Preregistration, Text, equivalence, faces, levels, scaling};
 use crate::hypothesis::is_two_way;
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::simulate::{factor_levels, traits};
 use crate::trials::rule::Rule;
 

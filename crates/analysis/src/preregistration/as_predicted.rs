@@ -1,12 +1,13 @@
 //! The same preregistration by the questions of AsPredicted, by their numbers and in our own words: what is written below a
 //! number goes into that field. AsPredicted takes English.
 
+use mimique_locale::Language;
+
 use super::{
     Preregistration, Text, analysis, collection, design, hypotheses, rationale, simulation, size,
     stopping_rule, wanted,
 };
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 
 /// The text, in markdown and in English, whatever the language that `from` names.
 pub fn as_predicted(from: &Preregistration<'_>) -> String {

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use mimique_locale::Language;
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{
     Clip, Component, Constraint, KindOfQuestion as _, OrderRule, Question, Sequence, SequenceItem,
@@ -9,8 +10,7 @@ use mimique_study::{
 };
 
 use super::{Preregistration, Text, faces, levels, pairs, panels, scaling};
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::simulate::factor_levels;
 
 pub(super) fn write(text: &mut Text, from: &Preregistration<'_>, naming: &Naming<'_>) {

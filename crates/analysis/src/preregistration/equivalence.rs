@@ -1,10 +1,10 @@
 //! Hypotheses of equivalence in words: the tests, the smallest difference that matters, and why.
 
+use mimique_locale::Language;
 use mimique_stats::{EquivalenceOfGroups, EquivalenceOfPairs, TestResult as _};
 use mimique_study::{Hypothesis, Study, TestName};
 
 use super::Text;
-use crate::language::Language;
 
 /// The tests that decide.
 pub(super) fn tests(language: Language, hypothesis: &Hypothesis, between_people: bool) -> String {

@@ -1,10 +1,10 @@
 //! Blocks of reverse correlation in words: what is drawn, and how images are made of the answers.
 
+use mimique_locale::Language;
 use mimique_study::Study;
 
 use super::Text;
 use crate::faces::{BINS, PERMUTATIONS};
-use crate::language::Language;
 
 /// What is drawn at random.
 pub(super) fn design(text: &mut Text, study: &Study, language: Language) {

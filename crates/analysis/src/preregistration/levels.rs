@@ -1,9 +1,9 @@
 //! Adaptive blocks in words: what is varied by which rule, and how thresholds are estimated.
 
+use mimique_locale::Language;
 use mimique_study::{AdaptiveComponent, LevelRule, Study};
 
 use super::Text;
-use crate::language::Language;
 
 /// What is varied by the answers.
 pub(super) fn design(text: &mut Text, study: &Study, language: Language) {

@@ -16,10 +16,10 @@ mod scaling;
 use std::fmt::Write;
 
 pub use as_predicted::as_predicted;
+use mimique_locale::Language;
 use mimique_study::Study;
 
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::power::{Power, no_effect, power_markdown};
 use crate::simulate::Parameters;
 

@@ -1,10 +1,10 @@
 //! Blocks of pairs in words: what is compared, and which pairs each participant is shown.
 
+use mimique_locale::Language;
 use mimique_study::{ClipShowing, Study};
 
 use super::Text;
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 
 /// What is compared with what, and how pairs are dealt.
 pub(super) fn design(text: &mut Text, study: &Study, language: Language, naming: &Naming<'_>) {

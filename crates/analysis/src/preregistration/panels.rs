@@ -1,10 +1,10 @@
 //! Blocks of panels in words: which conditions stand on a page, and whom BS.1534 leaves out.
 
+use mimique_locale::Language;
 use mimique_study::{ClipShowing, Study};
 
 use super::Text;
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 
 /// What stands on a page, how it is shown, and who is left out.
 pub(super) fn design(text: &mut Text, study: &Study, language: Language, naming: &Naming<'_>) {

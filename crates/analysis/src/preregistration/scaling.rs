@@ -1,9 +1,9 @@
 //! Blocks of difference scaling in words: which levels are shown, and how the scale is estimated.
 
+use mimique_locale::Language;
 use mimique_study::{ScalingRule, Study};
 
 use super::Text;
-use crate::language::Language;
 use crate::scaling::ROUNDS;
 
 /// Which levels are shown.

@@ -4,36 +4,23 @@
 //! input. Each test stands in two columns: as in the thesis (trials taken for independent
 //! observations) and as recommended (one value a person).
 
-pub(crate) mod document;
 pub(crate) mod figure;
-mod html;
-mod latex;
-mod markdown;
 mod preview;
 mod replay;
 pub(crate) mod results;
 pub(crate) mod section;
 pub(crate) mod tables;
 
+use mimique_locale::Language;
+use mimique_report::{ReportFile, document_files};
 use mimique_stats::Table;
 use mimique_study::Study;
 
-use crate::language::Language;
 use crate::mimicry::tables::FaceTables;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use crate::trials::stimulus_measures::StimulusMeasures;
-use document::{Block, DataTable, Document};
 use preview::Preview;
-
-/// One file of a report.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ReportFile {
-    /// Path below the report's folder, with `/`.
-    pub path: String,
-    /// Contents.
-    pub text: String,
-}
 
 /// A report: its files, and its findings in short.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -103,52 +90,4 @@ pub fn analyze_with(
         trials: export.flow.trials_used,
         readings,
     })
-}
-
-/// The files of a document: as HTML and Markdown, each table as CSV and LaTeX, each figure as SVG and as a
-/// table.
-pub fn document_files(document: &Document, language: Language) -> Vec<ReportFile> {
-    let mut files = vec![
-        ReportFile { path: "report.html".to_owned(), text: html::html(document, language) },
-        ReportFile { path: "report.md".to_owned(), text: markdown::markdown(document) },
-    ];
-    files.extend(document.blocks.iter().flat_map(block_files));
-    let tables: Vec<&str> = document.blocks.iter().flat_map(table_ids).collect();
-    files.push(ReportFile {
-        path: "tables/all.tex".to_owned(),
-        text: latex::document(&document.title, &tables),
-    });
-    files
-}
-
-/// The files of a block: a table as CSV and LaTeX, a figure as SVG and as a table.
-fn block_files(block: &Block) -> Vec<ReportFile> {
-    let file = |path, text| ReportFile { path, text };
-    match block {
-        Block::Table(data) => table_files(data),
-        Block::Figure(figure) => vec![
-            file(format!("figures/{}.svg", figure.id), figure.svg.clone()),
-            file(format!("tables/figure-{}.csv", figure.data.id), figure.data.to_csv()),
-            file(format!("tables/figure-{}.tex", figure.data.id), latex::table(&figure.data)),
-        ],
-        Block::Decisions(decisions) => table_files(&decisions.data),
-        Block::Folded(_, blocks) => blocks.iter().flat_map(block_files).collect(),
-        _ => Vec::new(),
-    }
-}
-
-fn table_files(data: &DataTable) -> Vec<ReportFile> {
-    vec![
-        ReportFile { path: format!("tables/{}.csv", data.id), text: data.to_csv() },
-        ReportFile { path: format!("tables/{}.tex", data.id), text: latex::table(data) },
-    ]
-}
-
-fn table_ids(block: &Block) -> Vec<&str> {
-    match block {
-        Block::Table(data) => vec![&data.id],
-        Block::Decisions(decisions) => vec![&decisions.data.id],
-        Block::Folded(_, blocks) => blocks.iter().flat_map(table_ids).collect(),
-        _ => Vec::new(),
-    }
 }

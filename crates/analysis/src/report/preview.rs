@@ -1,9 +1,8 @@
 //! Addresses of single clips in the preview of a study, to which figures lead.
 
+use mimique_locale::Language;
+use mimique_report::svg::Link;
 use mimique_study::percent_encoded;
-
-use crate::language::Language;
-use crate::report::figure::svg::Link;
 
 /// The preview of the study, by its address.
 #[derive(Debug, Clone, Copy)]

@@ -1,5 +1,7 @@
 //! Tables of tests: as in the thesis beside recommended.
 
+use mimique_locale::Language;
+use mimique_report::document::DataTable;
 use mimique_stats::{Labelled, MixedModel, Outcome, Proportion, Term, TestResult as _};
 
 use crate::hypothesis::call::Design;
@@ -9,9 +11,7 @@ use crate::hypothesis::person_level::{Pair, PersonLevel};
 use crate::hypothesis::reading;
 use crate::hypothesis::trial_level::TrialLevel;
 use crate::hypothesis::undefined::TestOutcome;
-use crate::language::Language;
-use crate::language::naming::Naming;
-use crate::report::document::DataTable;
+use crate::naming::Naming;
 use crate::trials::measure::MeasureKind;
 
 /// Cells of one test: what was computed, p without correction, effect.

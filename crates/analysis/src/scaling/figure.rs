@@ -1,8 +1,7 @@
 //! The figure of a scale: the perceived value by level, with its band.
 
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH};
 use mimique_stats::DifferenceScale;
-
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 12.0;

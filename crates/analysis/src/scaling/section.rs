@@ -1,9 +1,9 @@
 //! What the report says of blocks of difference scaling.
 
+use mimique_report::document::{Block, DataTable, Figure, slug};
 use mimique_stats::{DifferenceScale, Outcome};
 
 use super::{BlockScale, ROUNDS, figure, scales};
-use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
 
 impl Writer<'_> {
@@ -25,7 +25,7 @@ impl Writer<'_> {
         let found = match scale {
             Outcome::Ok(found) => found.clone(),
             Outcome::Undefined { reason, .. } => {
-                let why = language.why_undefined(reason);
+                let why = reason.words(language);
                 self.blocks.push(Block::Caution(language.pick(
                     format!("The answers give no scale: {why}."),
                     format!("Les réponses ne donnent pas d’échelle : {why}."),

@@ -1,11 +1,11 @@
 //! The figure of a person's thresholds: the track, trial by trial, above the psychometric function.
 
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH};
 use mimique_stats::PsychometricFit;
 
 use mimique_study::Varied;
 
 use super::{ShownAnswer, counts, ends};
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 12.0;

@@ -1,8 +1,9 @@
 //! What the report says of adaptive blocks.
 
+use mimique_report::document::{Block, DataTable, Figure, slug};
+
 use super::figure::{FigureWords, curve_and_track};
 use super::{BlockThresholds, PersonThreshold, ROUNDS, Threshold, thresholds};
-use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::section::Writer;
 
 /// People whose track and curve are drawn, at most.

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use mimique_locale::Language;
 use mimique_stats::{Blocks, Factor, Numbers};
 use mimique_study::columns::ASSIGNED_CONDITION;
 use serde::Serialize;
 
-use crate::language::Language;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 

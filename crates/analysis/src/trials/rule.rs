@@ -1,9 +1,8 @@
 //! The rules by which a study leaves people and trials out: values; their words are made where somebody reads them.
 
+use mimique_locale::Language;
 use mimique_study::Study;
 use serde::{Serialize, Serializer};
-
-use crate::language::Language;
 
 /// A rule of exclusion. People come first, then trials.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use mimique_analysis::{Language, Parameters, PowerOptions, Simulation, power};
+use mimique_analysis::{Parameters, PowerOptions, Simulation, power};
+use mimique_locale::Language;
 use mimique_study::Study;
 use serde_json::{Value, json};
 

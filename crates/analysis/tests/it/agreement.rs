@@ -1,7 +1,8 @@
 //! Agreement about clips and the consistency of scales in the report: on planted answers, with gaps, of pages and of
 //! trials, in both languages.
 
-use mimique_analysis::{Language, analyze};
+use mimique_analysis::analyze;
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{CompositeScale, Study};
 use mimique_test_support::Random;

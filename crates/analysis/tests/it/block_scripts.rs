@@ -3,7 +3,8 @@
 
 use std::process::Command;
 
-use mimique_analysis::{Language, Parameters, Report, Simulation, analyze};
+use mimique_analysis::{Parameters, Report, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::{Value, json};

@@ -4,7 +4,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_analysis::{Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Severity, Study};
 use serde_json::{Value, json};

@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 
 use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Report, Simulation, analyze, power,
-    preregistration,
+    Parameters, PowerOptions, Preregistration, Report, Simulation, analyze, power, preregistration,
 };
+use mimique_locale::Language;
 use mimique_stats::{Numbers, Table, mann_whitney};
 use mimique_study::{Study, config_hash};
 use serde_json::{Value, json};

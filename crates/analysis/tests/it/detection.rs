@@ -1,7 +1,8 @@
 //! d' and criterion of a forced choice in the report: means over people where everybody saw enough, else of all answers
 //! together.
 
-use mimique_analysis::{Language, Report, analyze};
+use mimique_analysis::{Report, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_test_support::Random;
 use serde_json::Value;

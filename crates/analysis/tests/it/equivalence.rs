@@ -2,8 +2,9 @@
 //! table and the figure, power at a true difference of 0, and the preregistration.
 
 use mimique_analysis::{
-    Language, Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
+    Parameters, PowerOptions, Preregistration, Report, analyze, power, preregistration,
 };
+use mimique_locale::Language;
 use mimique_stats::{EquivalenceOptions, Numbers, Table, equivalence_of_pairs};
 use mimique_study::Study;
 use serde_json::Value;

@@ -1,7 +1,8 @@
 //! Blocks of reverse correlation: simulated people go through the study as a browser would, and the report finds the
 //! faces that they have in mind.
 
-use mimique_analysis::{FacePart, Language, Parameters, Simulation};
+use mimique_analysis::{FacePart, Parameters, Simulation};
+use mimique_locale::Language;
 use mimique_study::Study;
 use serde_json::Value;
 

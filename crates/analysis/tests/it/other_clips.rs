@@ -1,7 +1,8 @@
 //! Whether what is found holds for other people and other clips: min F' and the mixed model beside each hypothesis that
 //! compares ratings within people, and the mixed model as what decides.
 
-use mimique_analysis::{Language, Parameters, PowerOptions, analyze, power};
+use mimique_analysis::{Parameters, PowerOptions, analyze, power};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Generalise, Severity, Study};
 use mimique_test_support::Random;

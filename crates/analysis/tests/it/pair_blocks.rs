@@ -1,6 +1,7 @@
 //! Blocks of pairs, from people with worths to report, power and preregistration.
 
-use mimique_analysis::{Language, Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_analysis::{Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;

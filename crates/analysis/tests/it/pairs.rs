@@ -3,9 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use mimique_analysis::{
-    Language, Parameters, PowerError, PowerOptions, Report, Simulation, analyze, power,
-};
+use mimique_analysis::{Parameters, PowerError, PowerOptions, Report, Simulation, analyze, power};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Problem, Study};
 use serde_json::{Value, json};

@@ -2,9 +2,10 @@
 //! power of a test whose distribution is known.
 
 use mimique_analysis::{
-    Language, Parameters, Power, PowerOptions, PrecisionPoint, Preregistration, as_predicted,
-    power, power_markdown, power_runs, precision_csv, preregistration,
+    Parameters, Power, PowerOptions, PrecisionPoint, Preregistration, as_predicted, power,
+    power_markdown, power_runs, precision_csv, preregistration,
 };
+use mimique_locale::Language;
 use mimique_study::{StraightLining, Study};
 use serde_json::Value;
 

@@ -5,7 +5,8 @@ mod stimulus_measures;
 
 use std::collections::BTreeSet;
 
-use mimique_analysis::{Language, Parameters, Simulation, analyze};
+use mimique_analysis::{Parameters, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Hypothesis, Study};
 use serde_json::json;

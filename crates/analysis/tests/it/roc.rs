@@ -3,7 +3,8 @@
 
 use std::collections::HashMap;
 
-use mimique_analysis::{Language, Parameters, Simulation};
+use mimique_analysis::{Parameters, Simulation};
+use mimique_locale::Language;
 use mimique_stats::{Table, t_quantile_upper};
 use mimique_study::{KindOfQuestion as _, Study};
 use mimique_test_support::Random;

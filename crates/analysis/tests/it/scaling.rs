@@ -1,7 +1,8 @@
 //! Blocks of difference scaling: simulated people go through the study as a browser would, and the report finds the
 //! scale that they perceive.
 
-use mimique_analysis::{Language, Simulation};
+use mimique_analysis::Simulation;
+use mimique_locale::Language;
 use mimique_study::Study;
 use serde_json::Value;
 

@@ -3,7 +3,8 @@
 
 use std::process::Command;
 
-use mimique_analysis::{Language, Report, Simulation, analyze};
+use mimique_analysis::{Report, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{CompositeScale, Study};
 

@@ -1,6 +1,7 @@
 //! A study with sound: simulated people hear it, and the rules about sound leave out trials and people.
 
-use mimique_analysis::{Language, Parameters, Simulation, analyze};
+use mimique_analysis::{Parameters, Simulation, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Study, config_hash, parse};
 use mimique_test_support::study_text;

@@ -1,7 +1,8 @@
 //! Thresholds of adaptive blocks: planted ones are found again, those outside the levels are told as such, and levels
 //! that answers do not give are an error that is named.
 
-use mimique_analysis::{Language, Simulation};
+use mimique_analysis::Simulation;
+use mimique_locale::Language;
 use mimique_study::Study;
 use serde_json::Value;
 

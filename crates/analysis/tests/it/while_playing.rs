@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use mimique_analysis::{Language, Parameters, ReportOptions, Simulation, analyze_with};
+use mimique_analysis::{Parameters, ReportOptions, Simulation, analyze_with};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;

@@ -1,9 +1,8 @@
 //! The page of a ranking: who may be called better than whom, how sure that is, and what it is made of.
 
-use mimique_analysis::Language;
-use mimique_analysis::components::{Block, DataTable, Document, ranking as ranking_figure};
-use mimique_stats::format_p;
-use mimique_study::text::{counted, counted_as};
+use mimique_locale::{Language, counted, counted_as, format_p};
+use mimique_report::document::{Block, DataTable, Document};
+use mimique_report::figure::ranking as ranking_figure;
 
 use super::rows::{ranking_rows, span};
 use super::{Band, Difference, FEWEST_PEOPLE, FEWEST_VOTES, NotRanked, Ranking};

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{anyhow, bail};
 use mimique_annotate::labels::UNKNOWN;
 use mimique_annotate::{Answer, LARGEST, Model, Suggested, Take};
+use mimique_locale::counted;
 use mimique_mocap::WeightsTable;
 use mimique_stimulus::{EafAnnotation, TakeSegment, write_segments_with};
-use mimique_study::text::counted;
 use serde_json::json;
 
 use super::decoding::DecodeOptions;

@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use mimique_annotate::{Classifier, LearntLabel, Lesson, Model};
-use mimique_study::text::counted;
+use mimique_locale::counted;
 use serde_json::json;
 
 use super::corpus::{Corpus, CorpusOptions};

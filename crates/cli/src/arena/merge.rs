@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use mimique_arena::{ExportedVotes, Laboratory, pool, read_export, votes_csv};
+use mimique_locale::counted;
 use mimique_new_study::study_id;
-use mimique_study::text::counted;
 
 use super::inputs::{POOLED_FILE, PooledFile, VOTES_FILE, open, stimuli, write_folder};
 

@@ -8,8 +8,8 @@ use anyhow::{anyhow, bail};
 use mimique_arena::{
     ARENA_FILE, Given, MadeArena, NewArena, SubmissionDetails, arena_schema_text, new_arena,
 };
+use mimique_locale::counted;
 use mimique_new_study::study_id;
-use mimique_study::text::counted;
 use serde_json::json;
 
 use super::inputs::{all_of, each, today, write_folder};

@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::bail;
-use mimique_analysis::components::document_files;
-use mimique_analysis::{Language, ReportFile};
 use mimique_arena::{RankOptions, Ranking, Submission, rank, ranking_document, ranking_rows};
+use mimique_locale::Language;
+use mimique_report::{ReportFile, document_files};
 use serde_json::json;
 
 use super::inputs::{open, pooled};

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
 use mimique_arena::{ArenaStudy, arena_study};
+use mimique_locale::counted;
 use mimique_storage::durable_file;
 use mimique_study::config_hash;
-use mimique_study::text::counted;
 use serde_json::{Value, json};
 
 use super::inputs::open;

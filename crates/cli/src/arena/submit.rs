@@ -9,7 +9,7 @@ use mimique_arena::{
     TOLERANCE_MM, check_details, check_vertices, check_weights, submission_files,
 };
 use mimique_avatar_files::{read_avatar, read_template};
-use mimique_study::text::counted;
+use mimique_locale::counted;
 
 use super::inputs::{all_of, open, today, write_folder};
 

@@ -25,13 +25,13 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
-use mimique_analysis::{Language, Report, ReportOptions, analyze_with};
+use mimique_analysis::{Report, ReportOptions, analyze_with};
+use mimique_locale::{Language, counted, counted_as};
 use mimique_server::export::stimuli_of;
 use mimique_server::{Assets, HostedStudy, Hosting, Stage};
 use mimique_session::flow::Plays;
 use mimique_session::rows::TidyForm;
 use mimique_stats::Table;
-use mimique_study::text::{counted, counted_as};
 use mimique_study::{CheckedStudy, StaticHosting, Study};
 use serde_json::{Value, json};
 

@@ -1,9 +1,8 @@
 //! The two pages of a capsule: the reader, and the study's page that keeps nothing.
 
 use maud::{DOCTYPE, Markup, html};
-use mimique_analysis::Language;
+use mimique_locale::{Language, counted};
 use mimique_server::{first_page, replay_player, replay_words};
-use mimique_study::text::counted;
 use mimique_study::{Multilingual as _, Study, TestName};
 use serde::Deserialize as _;
 use serde::de::IntoDeserializer as _;
@@ -279,7 +278,7 @@ pub fn sentences(
     language: Language,
 ) -> Vec<String> {
     let people = |count: usize| match language {
-        Language::English => mimique_study::text::counted_as(count, "person", "people"),
+        Language::English => mimique_locale::counted_as(count, "person", "people"),
         Language::French => format!("{count} {}", if count < 2 { "personne" } else { "personnes" }),
     };
     let list = |names: Vec<&str>| names.join(", ");

@@ -3,7 +3,7 @@
 use std::io::{BufRead, IsTerminal as _, Write};
 
 use mimique_deposit::{Answers, Finding, Rare, addresses_in_study};
-use mimique_study::text::counted_as;
+use mimique_locale::counted_as;
 use serde_json::Value;
 
 use crate::asker::Asker;

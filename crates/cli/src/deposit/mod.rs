@@ -11,14 +11,14 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
-use mimique_analysis::{Language, ReportOptions, analyze_with};
+use mimique_analysis::{ReportOptions, analyze_with};
 use mimique_deposit::{
     About, Answers, Author, CODE_LICENCES, DATA_LICENCES, DepositFile, Judged, Licence, Parts,
     Texts, deposit_files, is_day, licence_named, pack_hashes, personal, stimulus_rows,
 };
+use mimique_locale::{Language, counted};
 use mimique_stats::Table;
 use mimique_study::Study;
-use mimique_study::text::counted;
 
 use self::inputs::Inputs;
 use self::upload::Target;

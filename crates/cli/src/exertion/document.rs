@@ -1,7 +1,8 @@
 //! The report as pages: what was computed, what is to be minded, whose is what, provenance.
 
-use mimique_analysis::components::{Block, DataTable, Document, Figure, time_courses};
 use mimique_exertion::Expression;
+use mimique_report::document::{Block, DataTable, Document, Figure};
+use mimique_report::figure::time_courses;
 use serde_json::Value;
 
 use super::report::Report;

@@ -2,10 +2,10 @@
 
 use std::io::Write as _;
 
-use mimique_analysis::components::CoursePanel;
 use mimique_clip::weights_hash;
 use mimique_exertion::{Course, Curves, Expression, Finding, Heart, Person, Series, VERSION};
 use mimique_mocap::WeightsTable;
+use mimique_report::figure::CoursePanel;
 use mimique_stimulus::{ExertionTake, Provenance};
 use serde_json::{Value, json};
 

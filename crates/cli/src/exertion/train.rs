@@ -6,9 +6,9 @@ use std::path::Path;
 use anyhow::{anyhow, bail};
 use mimique_exertion::{Feature, Person, Plan, RecordedHeart, ShapeTable};
 use mimique_exertion_training::{Grid, Lesson, LessonTake, train};
+use mimique_locale::{counted, counted_as};
 use mimique_mocap::{ActivityColumn, WeightOptions, read_activity};
 use mimique_stimulus::read_performance;
-use mimique_study::text::{counted, counted_as};
 use serde_json::json;
 
 use super::args::TrainOptions;

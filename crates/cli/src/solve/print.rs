@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
+use mimique_locale::counted;
 use mimique_stimulus::{ShapeRow, ShapeState, SolveReport, SolvedCapture};
-use mimique_study::text::counted;
 use serde_json::{Value, json};
 
 use super::args::Args;

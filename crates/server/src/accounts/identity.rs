@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_storage::{Account, Role};
 
 use crate::clock::now_ms;

@@ -9,7 +9,7 @@ use axum::Json;
 use axum::extract::rejection::{BytesRejection, JsonRejection};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_session::wire::Refusal;
 use mimique_storage::StorageError;
 pub(crate) use table::Error;

@@ -36,12 +36,12 @@ macro_rules! refusals {
             }
 
             /// The words in a language. A message begins with a small letter and ends without a stop.
-            pub fn words(&self, language: mimique_analysis::Language) -> Words {
+            pub fn words(&self, language: mimique_locale::Language) -> Words {
                 match (self, language) {
-                    $((Self::$name $({ $($value),+ })?, mimique_analysis::Language::English) => {
+                    $((Self::$name $({ $($value),+ })?, mimique_locale::Language::English) => {
                         Words { message: format!($message), remedy: format!($remedy) }
                     }
-                    (Self::$name $({ $($value),+ })?, mimique_analysis::Language::French) => {
+                    (Self::$name $({ $($value),+ })?, mimique_locale::Language::French) => {
                         Words { message: format!($french), remedy: format!($french_remedy) }
                     })+
                 }
@@ -292,7 +292,7 @@ refusals! {
 
 #[cfg(test)]
 mod tests {
-    use mimique_analysis::Language;
+    use mimique_locale::Language;
 
     use super::*;
 

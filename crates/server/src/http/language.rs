@@ -1,7 +1,7 @@
 //! The languages that a browser asks for; language of the researchers' pages.
 
 use axum::http::{HeaderMap, header};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 
 use super::cookies;
 

@@ -9,7 +9,7 @@ use axum::Extension;
 use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_storage::Withdrawal;
 use mimique_study::Multilingual as _;
 use serde::Deserialize;

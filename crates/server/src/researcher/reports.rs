@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mimique_analysis::{Language, MeasuredFaces, Report, ReportOptions, analyze_with};
+use mimique_analysis::{MeasuredFaces, Report, ReportOptions, analyze_with};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_storage::Storage;
 use mimique_study::Study;

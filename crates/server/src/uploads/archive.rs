@@ -164,7 +164,7 @@ fn study_file(folder: &Path) -> Result<PathBuf, Error> {
 mod tests {
     use std::io::Cursor;
 
-    use mimique_analysis::Language;
+    use mimique_locale::Language;
     use zip::write::SimpleFileOptions;
 
     use super::*;

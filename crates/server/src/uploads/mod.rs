@@ -12,7 +12,7 @@ mod pages;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_stimulus::{Places, Progress};
 use mimique_storage::{Role, UploadedStudy, durable_file};
 use mimique_study::{CheckedStudy, Issue};

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use axum::http::StatusCode;
-use mimique_analysis::{Language, analyze};
+use mimique_analysis::analyze;
+use mimique_locale::Language;
 use mimique_server::HostedStudy;
 use mimique_server::export::{Format, Options, export};
 use mimique_session::flow::Plan;

@@ -1,6 +1,6 @@
 //! Results as lines of text for people.
 
-use crate::words::{format_number, format_p};
+use mimique_locale::{format_number, format_p};
 
 /// A text that grows by lines.
 #[derive(Default)]

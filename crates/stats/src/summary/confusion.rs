@@ -1,5 +1,6 @@
 //! Confusion matrix of what was shown and what was answered, and agreement.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::estimate::proportion::{Proportion, proportion};
@@ -12,7 +13,6 @@ use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::factor::{Factor, alphabetical};
 use crate::table::sample::complete_rows;
-use crate::words::format_number;
 
 /// Result of [`confusion`].
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,5 +1,6 @@
 //! Description of one sample: location, spread, quartiles (type 7), t interval of the mean.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::distributions::tail::t_quantile_upper;
@@ -11,7 +12,6 @@ use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::undefined::Undefined;
-use crate::words::format_number;
 
 /// Result of [`describe`]. A field is none where it is not defined (spread of one value).
 #[derive(Debug, Clone, PartialEq, Serialize)]

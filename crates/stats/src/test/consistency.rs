@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, chi_square_upper};
@@ -18,7 +19,6 @@ use crate::refusal::{Refusal, Unfit};
 use crate::table::Table;
 use crate::table::comparisons::{COMPARISON_OPTIONS, Chosen, PairedComparisons};
 use crate::undefined::NoEstimate;
-use crate::words::{format_number, format_p};
 
 /// Items up to which p of a number of circular triads is exact.
 const EXACT_UP_TO: usize = 7;

@@ -3,6 +3,7 @@
 //! α = k / (k - 1) (1 - Σ var_i / var of the sum) (Cronbach 1951), its interval by Feldt 1965:
 //! (1 - α) F with n - 1 and (n - 1)(k - 1) degrees of freedom.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::distributions::tail::f_quantile;
@@ -15,7 +16,6 @@ use crate::summary::describe::moments;
 use crate::table::sample::complete_rows;
 use crate::table::{Numbers, Table};
 use crate::undefined::NoEstimate;
-use crate::words::format_number;
 
 /// Result of [`cronbach`].
 #[derive(Debug, Clone, PartialEq, Serialize)]

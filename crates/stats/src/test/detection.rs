@@ -5,6 +5,7 @@
 //! c = -(z(H) + z(F)) / 2, ln β = (z(F)² - z(H)²) / 2 (Macmillan and Creelman 2005); the standard error of d' is
 //! by Gourevitch and Galanter 1967. Means over people come with t intervals.
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{normal_quantile_upper, t_quantile_upper, t_two_sided};
@@ -19,7 +20,6 @@ use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
 use crate::undefined::NoEstimate;
-use crate::words::{format_number, format_p};
 
 /// Signals of a person below which the person's own d' says little.
 pub(crate) const FEW_SIGNALS: u64 = 5;

@@ -5,6 +5,7 @@
 //! P = Φ(|ψ_d - ψ_c| - |ψ_b - ψ_a|), ψ rising. A triad a, b, c is the pairs (a, b) and (b, c). The lowest level
 //! has ψ = 0, the unit is the standard deviation of the judgement.
 
+use mimique_locale::format_number;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
@@ -22,7 +23,6 @@ use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
 use crate::undefined::NoEstimate;
-use crate::words::format_number;
 
 /// Newton's steps, at most; the likelihood is concave.
 const STEPS: usize = 100;

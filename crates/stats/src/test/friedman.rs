@@ -1,6 +1,7 @@
 //! Friedman's test of one observation a block and group, with Iman and Davenport's F, Kendall's W and
 //! Quade's test beside it.
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::adjust::Adjustment;
@@ -18,7 +19,6 @@ use crate::table::blocks::Blocks;
 use crate::table::pairs::rounded;
 use crate::test::wilcoxon::{WilcoxonOptions, thesis_p_without_rounding, wilcoxon};
 use crate::undefined::Undefined;
-use crate::words::{format_number, format_p};
 
 /// Result of [`friedman`].
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -7,6 +7,7 @@
 //! | ICC2, ICC2k | two-way, raters drawn at random: agreement | the same |
 //! | ICC3, ICC3k | two-way, these raters only: consistency | the same |
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, f_quantile, f_upper};
@@ -19,7 +20,6 @@ use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::blocks::Blocks;
 use crate::undefined::NoEstimate;
-use crate::words::{format_number, format_p};
 
 /// Clips and raters below which the coefficients say nothing.
 const CLIPS_NEEDED: usize = 5;

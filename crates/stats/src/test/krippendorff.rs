@@ -3,6 +3,7 @@
 //! α = 1 - D_o / D_e on the coincidence matrix o: each pair of values of a unit of m values counts
 //! 1 / (m - 1) (Krippendorff 2004, Content Analysis, chapter 11). Units with fewer than two values tell nothing.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::estimate::resampled::resampled_interval;
@@ -18,7 +19,6 @@ use crate::table::factor::Factor;
 use crate::table::number::parse_number;
 use crate::table::sample::complete_rows;
 use crate::undefined::NoEstimate;
-use crate::words::format_number;
 
 /// What distances between values mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

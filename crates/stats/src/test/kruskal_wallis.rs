@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::adjust::Adjustment;
@@ -20,7 +21,6 @@ use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::factor::Factor;
-use crate::words::{format_number, format_p};
 
 /// Arrangements of the observations into groups up to which the permutation p is enumerated.
 const ENUMERATED: f64 = 1e6;

@@ -1,6 +1,7 @@
 //! Mann-Whitney test of two groups: U of the first, exact without ties when both have fewer than 50
 //! observations, else normal with tie and continuity correction.
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{Alternative, Tail, normal_quantile_upper, normal_tail};
@@ -15,7 +16,6 @@ use crate::refusal::Refusal;
 use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::factor::Factor;
-use crate::words::{format_number, format_p};
 
 /// Result of [`mann_whitney`].
 #[derive(Debug, Clone, PartialEq, Serialize)]

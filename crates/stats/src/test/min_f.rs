@@ -5,6 +5,7 @@
 //! min F' = F1 F2 / (F1 + F2) on k - 1 and (F1 + F2)² / (F1² / n2 + F2² / n1) degrees of freedom, n1 and n2 those
 //! below F1 and F2. It is a lower bound of the F in which people and segments are both drawn at random.
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, f_upper};
@@ -18,7 +19,6 @@ use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
 use crate::table::{Numbers, Table};
 use crate::undefined::NoEstimate;
-use crate::words::{format_number, format_p};
 
 /// An F of repeated measures.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -5,6 +5,7 @@
 //! segments. Segments whose anchor more than 25 % of people put above 90 do not count for the second rule. The
 //! comparison is Friedman's on the person means of those who are kept.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::outcome::{Labelled, Outcome};
@@ -19,7 +20,6 @@ use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
 use crate::table::{Numbers, Table};
 use crate::test::friedman::{Friedman, friedman};
-use crate::words::format_number;
 
 /// Ratings of several conditions of each segment by each person.
 #[derive(Debug, Clone, PartialEq)]

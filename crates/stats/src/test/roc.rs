@@ -6,6 +6,7 @@
 //! that a signal stands above a noise, ties counted half: Mann and Whitney's U over signals x noise (Bamber 1975).
 //! Where answers tell nothing of what was shown it is one half.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::outcome::Outcome;
@@ -19,7 +20,6 @@ use crate::table::sample::complete_rows;
 use crate::table::{Numbers, Table};
 use crate::test::detection::FEW_SIGNALS;
 use crate::undefined::NoEstimate;
-use crate::words::format_number;
 
 /// A curve and the area below it.
 #[derive(Debug, Clone, PartialEq, Serialize)]

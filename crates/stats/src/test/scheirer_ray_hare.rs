@@ -3,6 +3,7 @@
 //! Scheirer, Ray and Hare 1976: H = SS_effect / MS_total, MS_total = SS_total / (n - 1), which is the
 //! tie correction. The sums of squares need cell counts and cell rank sums only.
 
+use mimique_locale::{format_number, format_p};
 use serde::{Serialize, Serializer};
 
 use crate::distributions::tail::chi_square_upper;
@@ -19,7 +20,6 @@ use crate::table::Table;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
 use crate::undefined::Undefined;
-use crate::words::{format_number, format_p};
 
 /// Type of the sums of squares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

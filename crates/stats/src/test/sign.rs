@@ -4,6 +4,7 @@
 //! ones is then binomial with probability 1/2. The interval of the median difference is that of the
 //! order statistics of all differences (Conover 1999, section 3.2); its level is exact.
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{Alternative, Tail, binomial_half_at_least};
@@ -18,7 +19,6 @@ use crate::summary::describe::quantile_sorted;
 use crate::table::pairs::{PAIR_OPTIONS, differences, rounded};
 use crate::table::{Numbers, Table};
 use crate::undefined::Undefined;
-use crate::words::{format_number, format_p};
 
 /// Level of the interval of the median difference.
 const LEVEL: f64 = 0.95;

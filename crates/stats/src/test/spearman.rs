@@ -1,5 +1,6 @@
 //! Spearman's rank correlation, with Kendall's tau-b beside it.
 
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, normal_quantile_upper, normal_upper, t_two_sided};
@@ -15,7 +16,6 @@ use crate::table::Table;
 use crate::table::sample::complete_rows;
 use crate::test::kendall;
 use crate::undefined::Undefined;
-use crate::words::format_number;
 
 /// Up to this many pairs without ties all orders are enumerated.
 const ENUMERATED: usize = 9;

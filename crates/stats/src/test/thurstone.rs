@@ -4,6 +4,7 @@
 //! David 1960). A worth is in standard deviations of the judgement of one pair; 0.67449 of them are a just
 //! noticeable difference, at which 75 % of the choices fall on one item.
 
+use mimique_locale::{format_number, format_p};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
@@ -21,7 +22,6 @@ use crate::test::bradley_terry::{
     model_of, side,
 };
 use crate::undefined::NoEstimate;
-use crate::words::{format_number, format_p};
 
 /// Φ^-1(0.75): the difference of worths at which 75 % of choices fall on one item.
 const JND: f64 = 0.674_489_750_196_081_7;

@@ -4,6 +4,7 @@ mod estimate;
 
 use std::fmt;
 
+use mimique_locale::Language;
 use serde::{Serialize, Serializer};
 
 use crate::procedure::row::Term;
@@ -126,6 +127,14 @@ impl Undefined {
             }
             Self::Estimate(why) => why.english(),
             Self::Refused(refusal) => refusal.english(),
+        }
+    }
+
+    /// In the middle of a sentence of a report.
+    pub fn words(&self, language: Language) -> String {
+        match language {
+            Language::English => self.english(),
+            Language::French => self.french(),
         }
     }
 

@@ -3,9 +3,8 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
+use mimique_locale::counted;
 use serde_json::Value;
-
-use crate::text::counted;
 
 use super::nearest::nearest;
 

@@ -256,7 +256,7 @@ pub(super) fn label(options: &[Choice], value: &str, language: &str) -> Vec<Stri
 
 /// Of English and French, the text in a language.
 pub(super) fn pick<T>(language: &str, english: T, french: T) -> T {
-    if crate::text::primary_language(language) == "fr" { french } else { english }
+    if mimique_locale::primary_language(language) == "fr" { french } else { english }
 }
 
 /// The labels of options, joined.

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use mimique_locale::primary_language;
+
 use super::Study;
-use crate::text::{Words, primary_language, words};
+use crate::text::{Words, words};
 
 /// Buttons and messages of the study's own, by language and by name.
 pub type Translations = BTreeMap<String, BTreeMap<String, String>>;

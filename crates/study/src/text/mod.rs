@@ -1,7 +1,6 @@
 //! The words of the pages that no study file writes: buttons, messages. English and French are complete
 //! here; a study file brings others (`translations`).
 
-mod counted;
 mod mimicry;
 mod sentences;
 mod sound;
@@ -13,7 +12,8 @@ use std::collections::BTreeMap;
 
 use std::borrow::Cow;
 
-pub use counted::{counted, counted_as, counted_in_french};
+use mimique_locale::primary_language;
+
 pub use mimicry::mimicry_words;
 pub use sound::sound_words;
 use table::{COUNT, ENGLISH, FRENCH, NAMES, Place};
@@ -39,11 +39,6 @@ pub fn words(language: &str) -> &'static Words {
     static FRENCH_WORDS: Words =
         Words { language: Cow::Borrowed("fr"), own: BTreeMap::new(), built_in: &FRENCH };
     if primary_language(language) == "fr" { &FRENCH_WORDS } else { &ENGLISH_WORDS }
-}
-
-/// The language that a code begins with: `fr` of `fr-BE` (BCP 47, 2.2.1) and of `fr_BE`.
-pub fn primary_language(code: &str) -> &str {
-    code.split(['-', '_']).next().unwrap_or(code)
 }
 
 impl Words {

@@ -1,8 +1,8 @@
 //! What `deny.toml` says of licences, sources and unwanted crates, held against every dependency of
 //! this machine's build and of the wasm modules. `cargo deny check` says the same of every platform,
-//! and of advisories, where cargo-deny is installed.
+//! and of advisories, where cargo-deny is installed. And which of our own crates must not be built of which.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
 use mimique_test_support::repository;
@@ -77,16 +77,12 @@ fn expressions_are_read() {
     }
 }
 
-#[test]
-fn every_dependency_is_one_that_we_may_use() {
-    let rules = std::fs::read_to_string(repository().join("deny.toml")).expect("deny.toml");
-    let licences = listed(&rules, "allow = [");
-    let banned = listed(&rules, "deny = [");
-    assert!(licences.contains("MIT") && banned.contains("openssl"), "{licences:?} {banned:?}");
+/// What cargo says of every package of this machine's build and of the wasm modules.
+fn metadata() -> Value {
     let rustc = Command::new("rustc").arg("-vV").output().expect("rustc");
     let version = String::from_utf8_lossy(&rustc.stdout).into_owned();
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("the host");
-    let metadata = |offline: &[&str]| {
+    let read = |offline: &[&str]| {
         Command::new(env!("CARGO"))
             .args(["metadata", "--format-version", "1", "--locked"])
             .args(offline)
@@ -96,12 +92,66 @@ fn every_dependency_is_one_that_we_may_use() {
             .expect("cargo")
     };
     // A crate that nothing here compiles may not have been fetched yet.
-    let mut output = metadata(&["--offline"]);
+    let mut output = read(&["--offline"]);
     if !output.status.success() {
-        output = metadata(&[]);
+        output = read(&[]);
     }
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// Our own crates that a crate is built of, itself among them; those of its tests are left out.
+fn built_of(metadata: &Value, name: &str) -> BTreeSet<String> {
+    let nodes = metadata["resolve"]["nodes"].as_array().expect("nodes");
+    let packages = metadata["packages"].as_array().expect("packages");
+    let named: BTreeMap<&str, &str> = (packages.iter())
+        .filter_map(|package| Some((package["id"].as_str()?, package["name"].as_str()?)))
+        .collect();
+    let needs = |id: &str| -> Vec<&str> {
+        let node = nodes.iter().find(|node| node["id"] == id).expect("a package of the build");
+        let is_of_build = |kind: &Value| kind["kind"].is_null();
+        let needed = node["deps"].as_array().expect("dependencies").iter();
+        needed
+            .filter(|dep| dep["dep_kinds"].as_array().expect("kinds").iter().any(is_of_build))
+            .filter_map(|dep| dep["pkg"].as_str())
+            .collect()
+    };
+    let first = named.iter().find(|(_, own)| **own == name);
+    let mut open = vec![*first.unwrap_or_else(|| panic!("no crate {name}")).0];
+    let mut found = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        if named[id].starts_with("mimique-") && found.insert(named[id].to_owned()) {
+            open.extend(needs(id));
+        }
+    }
+    found
+}
+
+#[test]
+fn no_crate_is_built_of_what_it_must_not_know() {
+    let metadata = metadata();
+    let all = |names: &[&str]| -> BTreeSet<String> {
+        names.iter().map(|name| format!("mimique-{name}")).collect()
+    };
+    assert_eq!(built_of(&metadata, "mimique-locale"), all(&["locale"]));
+    assert_eq!(built_of(&metadata, "mimique-report"), all(&["locale", "report"]));
+    assert_eq!(built_of(&metadata, "mimique-figure-pdf"), all(&["figure-pdf", "locale", "report"]));
+    assert!(built_of(&metadata, "mimique-server").contains("mimique-analysis"));
+    for name in ["web-studio", "arena", "layout", "annotate"] {
+        let own = built_of(&metadata, &format!("mimique-{name}"));
+        for other in ["analysis", "session", "server"] {
+            assert!(!own.contains(&format!("mimique-{other}")), "{name} is built of {other}");
+        }
+    }
+}
+
+#[test]
+fn every_dependency_is_one_that_we_may_use() {
+    let rules = std::fs::read_to_string(repository().join("deny.toml")).expect("deny.toml");
+    let licences = listed(&rules, "allow = [");
+    let banned = listed(&rules, "deny = [");
+    assert!(licences.contains("MIT") && banned.contains("openssl"), "{licences:?} {banned:?}");
+    let metadata = metadata();
     let packages = metadata["packages"].as_array().expect("packages");
     let mut seen = 0;
     let mut wrong = Vec::new();

@@ -6,7 +6,8 @@
 use std::collections::BTreeMap;
 use std::process::Command;
 
-use mimique_analysis::{Language, Parameters, ReportOptions, Simulation, analyze_with};
+use mimique_analysis::{Parameters, ReportOptions, Simulation, analyze_with};
+use mimique_locale::Language;
 use mimique_server::export::{Format, Unstored};
 use mimique_stats::Table;
 use mimique_study::Study;

@@ -1,7 +1,7 @@
 //! What is saved of an exertion: weights and series as the command writes them, a figure, a study's capture.
 
-use mimique_analysis::components::{CoursePanel, time_courses};
 use mimique_exertion::{Course, FRAMES_PER_SECOND};
+use mimique_report::figure::{CoursePanel, time_courses};
 use mimique_study::{ExertionCapture, ExertionHeart, ExertionPerson};
 use serde_json::{Value, json};
 

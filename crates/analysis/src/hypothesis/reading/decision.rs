@@ -1,8 +1,9 @@
 //! What a hypothesis comes to, in two or three words.
 
+use mimique_locale::Language;
+
 use super::verdict;
 use crate::hypothesis::decision::{Decision, Sought};
-use crate::language::Language;
 
 /// A shape that says the same as the words, without colour: filled where something was shown.
 pub(crate) fn mark(decision: Decision) -> &'static str {

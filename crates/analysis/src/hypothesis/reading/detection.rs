@@ -4,7 +4,7 @@ use super::LEVEL;
 use super::pairs::oriented;
 use crate::hypothesis::person_level::{Pair, PersonLevel};
 use crate::hypothesis::test_line::OutcomeP as _;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 
 /// For which categories d' differs between levels, for which no difference was shown, and for which none could be:
 /// each with its tests on one value per person.

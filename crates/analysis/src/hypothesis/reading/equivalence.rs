@@ -1,11 +1,11 @@
 //! What tests of equivalence say.
 
+use mimique_locale::Language;
 use mimique_stats::{EquivalenceVerdict, Outcome};
 
 use super::{difference, unit};
 use crate::hypothesis::equivalence::{Equivalence, OneSidedTests};
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// The verdict on two levels, with the numbers that it rests on.

@@ -7,6 +7,7 @@ mod equivalence;
 mod other_clips;
 mod pairs;
 
+use mimique_locale::Language;
 use mimique_stats::{Outcome, Term};
 
 use crate::hypothesis::call::Design;
@@ -15,8 +16,7 @@ use crate::hypothesis::decision::Decision;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::undefined::TestOutcome;
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::trials::measure::MeasureKind;
 pub(crate) use decision::{decision, mark};
 pub(crate) use detection::d_prime_by;

@@ -4,7 +4,7 @@ use mimique_stats::Outcome;
 
 use super::{LEVEL, numbers};
 use crate::hypothesis::other_clips::{ClipModel, OtherClips};
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 
 /// Whether the difference holds for other clips, by the mixed model, with min F' beside it.
 pub(crate) fn other_clips(naming: &Naming<'_>, found: &OtherClips, factor: &str) -> String {

@@ -1,12 +1,12 @@
 //! Pairs of levels in plain words.
 
+use mimique_locale::Language;
 use mimique_stats::Outcome;
 
 use super::{LEVEL, difference, unit};
 use crate::hypothesis::person_level::Pair;
 use crate::hypothesis::test_line::{OutcomeP, TestLine};
-use crate::language::Language;
-use crate::language::naming::Naming;
+use crate::naming::Naming;
 use crate::trials::measure::MeasureKind;
 
 /// A sentence on each pair; `label` is that of the question where nothing before has named it.

@@ -1,11 +1,10 @@
 //! Box plots.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Svg, clipped};
 use mimique_stats::quantile_sorted;
-
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
-use crate::report::figure::{LEFT, RIGHT};
 
 /// Boxes of quartiles with whiskers from the 5th to the 95th percentile.
 pub(crate) fn boxes(

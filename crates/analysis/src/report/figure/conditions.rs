@@ -1,9 +1,11 @@
 //! People between conditions: one point a person, one mark for the mean of each condition.
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::people::{LEFT, RIGHT, tick, vertical};
-use crate::report::figure::svg::{Anchor, Svg, clipped};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::courses::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Svg, clipped};
+
+use crate::report::figure::people::{tick, vertical};
 use crate::trials::measure::MeasureKind;
 
 /// Points beside each other before the next stands where the first does.

@@ -1,8 +1,8 @@
 //! Sensitivity against criterion: a diamond per category, a dot per person and category; a panel per level.
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH};
 
 const LEFT: f64 = 44.0;
 const RIGHT: f64 = WIDTH - 14.0;

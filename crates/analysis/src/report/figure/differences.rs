@@ -1,12 +1,13 @@
 //! Differences of people between two levels.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Svg, clipped};
 use mimique_stats::Outcome;
 
 use crate::hypothesis::person_level::Pair;
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
-use crate::report::figure::{LEFT, RIGHT, differences_title};
+use crate::report::figure::differences_title;
 use crate::trials::measure::MeasureKind;
 
 /// Differences of each person, with the Hodges-Lehmann estimate and its interval.

@@ -1,10 +1,12 @@
 //! Intervals of a difference in the zone of differences that do not matter.
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Svg};
+
 use crate::report::figure::differences::difference_dots;
-use crate::report::figure::svg::{Anchor, Axis, Svg};
-use crate::report::figure::{LEFT, RIGHT, differences_title};
+use crate::report::figure::differences_title;
 use crate::trials::measure::MeasureKind;
 
 /// An estimate and its interval at 90 %.

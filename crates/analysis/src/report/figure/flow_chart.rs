@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Svg};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::svg::{Anchor, Svg};
+
 use crate::trials::export::Flow;
 use crate::trials::reason::Reason;
 

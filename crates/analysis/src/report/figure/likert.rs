@@ -1,12 +1,12 @@
 //! Ratings as stacked bars.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::LEFT;
+use mimique_report::svg::{Anchor, Svg, WIDTH, clipped};
 use mimique_stats::quantile_sorted;
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::LEFT;
 use crate::report::figure::stacked::{answer_key, stacked_bar};
-use crate::report::figure::svg::{Anchor, Svg, WIDTH, clipped};
 
 /// Ratings a level as bars of all answers, from the lowest to the highest point.
 pub(crate) fn likert(

@@ -1,13 +1,13 @@
 //! A mixed model: its shares of each rating beside those of the answers, and the standard deviations of its random
 //! effects.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Svg, clipped};
 use mimique_stats::MixedShares;
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
 use crate::report::figure::stacked::{answer_key, stacked_bar};
-use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
-use crate::report::figure::{LEFT, RIGHT};
 
 /// Left edge beside the names of random terms, which are long.
 const NAMES: f64 = 146.0;

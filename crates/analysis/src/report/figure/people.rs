@@ -1,15 +1,13 @@
 //! Figures of people and of the course of a session: lines of each person, order, fatigue, late frames.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::courses::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Svg, clipped, shade};
 use mimique_stats::Proportion;
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped, shade};
 use crate::report::figure::values_title;
 use crate::trials::measure::MeasureKind;
-
-pub(super) const LEFT: f64 = 52.0;
-pub(super) const RIGHT: f64 = WIDTH - 12.0;
 
 /// A value as people read it: shares in percent.
 pub(super) fn tick(language: Language, kind: MeasureKind, value: f64, decimals: usize) -> String {

@@ -1,11 +1,10 @@
 //! ROC curves: the rate of hits over the rate of false alarms, a line per category, with the diagonal of chance.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::LINES;
+use mimique_report::svg::{Anchor, Axis, Svg, clipped};
 use mimique_stats::RocCurve;
-
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::courses::LINES;
-use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
 
 const LEFT: f64 = 60.0;
 const TOP: f64 = 34.0;

@@ -1,8 +1,9 @@
 //! Mean answers against measures of the stimuli: a panel per measure, a dot per stimulus.
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH, clipped};
+
 use crate::report::preview::Preview;
 
 /// Panels beside each other.

@@ -1,11 +1,12 @@
 //! Shares of right answers.
 
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Svg, clipped};
 use mimique_stats::Proportion;
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, clipped};
-use crate::report::figure::{LEFT, RIGHT, values_title};
+use crate::report::figure::values_title;
 use crate::trials::measure::MeasureKind;
 
 /// Shares of right answers with Wilson intervals, and the share that guessing would give.

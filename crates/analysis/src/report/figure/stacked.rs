@@ -1,8 +1,8 @@
 //! Stacked bars of shares, from the lowest answer to the highest, and their key.
 
-use crate::language::Language;
-use crate::report::figure::LEFT;
-use crate::report::figure::svg::{Anchor, Svg, shade};
+use mimique_locale::Language;
+use mimique_report::figure::LEFT;
+use mimique_report::svg::{Anchor, Svg, shade};
 
 /// Narrower parts have no name.
 const LEAST_WIDTH: f64 = 20.0;

@@ -1,10 +1,12 @@
 //! Mean courses over the seconds of a clip, with bands; below them where two of them differ.
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::courses::LINES;
-use crate::report::figure::people::{LEFT, RIGHT, vertical};
-use crate::report::figure::svg::{Anchor, Axis, Link, Svg};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure};
+use mimique_report::figure::LINES;
+use mimique_report::figure::courses::{LEFT, RIGHT};
+use mimique_report::svg::{Anchor, Axis, Link, Svg};
+
+use crate::report::figure::people::vertical;
 use crate::report::section::traces::MeanTrace;
 use crate::trials::measure::MeasureKind;
 

@@ -11,11 +11,11 @@ mod trials;
 
 use std::fmt::Write;
 
+use mimique_report::ReportFile;
+use mimique_report::document::csv_text;
 use mimique_stats::{PROCEDURES, Procedure};
 
 use crate::hypothesis::call::Argument;
-use crate::report::ReportFile;
-use crate::report::document::csv_text;
 use crate::report::section::Writer;
 use check::{Check, Family, Nearness};
 use checks::Collector;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use mimique_locale::Language;
 use mimique_stats::Outcome;
 
 use super::quoted;
-use crate::language::Language;
 use crate::report::section::Writer;
 use crate::trials::measure::{Measure, MeasureKind};
 

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use mimique_locale::Language;
+use mimique_report::document::csv_text;
 use mimique_study::KindOfQuestion as _;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use super::shown::{of_blocks, spaced};
-use crate::language::Language;
-use crate::report::document::csv_text;
 use crate::report::section::Writer;
 use crate::trials::export::{Export, Trial};
 use crate::trials::measure::{Measure, MeasureKind};

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{KindOfQuestion as _, Measure as What, Question};
 use serde::Serialize;
 
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 

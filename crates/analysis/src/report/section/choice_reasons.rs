@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::Chosen;
 use mimique_study::KindOfQuestion as _;
 
 use crate::choices::answers;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 

@@ -1,13 +1,13 @@
 //! What tests say of the choices between the levels of a factor: table of tests, worths, their ranking, pairs, and
 //! whether the model describes the choices.
 
+use mimique_locale::Language;
+use mimique_report::document::{Block, DataTable, slug};
+use mimique_report::figure::ranking;
 use mimique_stats::{BradleyTerry, Outcome, PairedComparisons, Thurstone, WorthEstimates};
 
 use crate::choices::reading::{self, chosen_in};
 use crate::choices::tested::{self, ChoiceTests};
-use crate::language::Language;
-use crate::report::document::{Block, DataTable, slug};
-use crate::report::figure;
 use crate::report::section::Writer;
 use crate::report::tables;
 use crate::trials::asked_question::AskedQuestion;
@@ -103,7 +103,7 @@ impl Writer<'_> {
                 let ranked = found.in_jnd().into_iter().zip(&named);
                 let ranked: Vec<_> =
                     ranked.map(|((jnd, ends), name)| (name.clone(), jnd, ends)).collect();
-                self.figure(figure::ranking(language, &format!("{id}-ranking"), &caption, &ranked));
+                self.figure(ranking(language, &format!("{id}-ranking"), &caption, &ranked));
                 let table = self.table_of_worths(id, &named, found, thurstone);
                 self.blocks.push(Block::Table(table));
                 let table = self.contrasts(id, factor, found);

@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::PairedComparisons;
 use mimique_study::Clip;
 use serde::Serialize;
 
 use crate::choices::answers::by_factor;
 use crate::choices::tested::ChoiceTests;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::{MOST_LEVELS, Writer};
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Answer;

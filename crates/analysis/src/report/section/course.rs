@@ -1,12 +1,12 @@
 //! Sections of a report about people and about time: lines of each person, the course of the session.
 
+use mimique_locale::Language;
+use mimique_report::document::{Block, slug};
 use mimique_stats::{Factor, Numbers, Outcome, describe, proportion};
 use serde::Serialize;
 
 use crate::hypothesis::person_level;
 use crate::hypothesis::undefined::TestOutcome;
-use crate::language::Language;
-use crate::report::document::{Block, slug};
 use crate::report::figure::people::{self, Part};
 use crate::report::section::Writer;
 use crate::trials::measure::{Measure, MeasureKind};

@@ -1,13 +1,13 @@
 //! What comes first in a report: who took part, and what every hypothesis found, a row each.
 
+use mimique_report::document::{Block, DataTable, DecisionTable, RowEffects};
+use mimique_report::figure::{DrawnInterval, forest_row};
 use mimique_stats::Outcome;
 
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::decision::{Decision, Effect, EffectUnit, decision, effects};
 use crate::hypothesis::reading;
-use crate::report::document::{Block, DataTable, DecisionTable, RowEffects};
 use crate::report::figure::flow_chart::flow_in_words;
-use crate::report::figure::{DrawnInterval, forest_row};
 use crate::report::section::Writer;
 
 impl Writer<'_> {

@@ -1,11 +1,11 @@
 //! How well each shown category is told from all others: d' and criterion, person by person.
 
+use mimique_report::document::{DataTable, slug};
 use mimique_stats::{
     DetectedCategory, Detection, Factor, MeanTest, Outcome, Sensitivity, SignalCounts, detection,
 };
 use serde::Serialize;
 
-use crate::report::document::{DataTable, slug};
 use crate::report::figure::{DetectionPanel, DetectionPoints, detection_planes};
 use crate::report::section::Writer;
 use crate::report::section::detection_by_factor::DetectionByFactor;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{
     Blocks, DetectedCategory, Detection, Labelled, PersonSensitivity, Sensitivity,
 };
@@ -10,7 +11,6 @@ use serde::Serialize;
 use crate::hypothesis::call::Call;
 use crate::hypothesis::person_level::{self, PersonLevel, WithinDesigns};
 use crate::hypothesis::reading;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure::{DetectionPanel, detection_planes};
 use crate::report::section::Writer;
 use crate::report::section::detection::CategoryDetection;

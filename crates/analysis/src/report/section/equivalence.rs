@@ -1,10 +1,11 @@
 //! Tests of equivalence below those of a hypothesis: a table, and the intervals in the zone of differences that do not
 //! matter.
 
+use mimique_report::document::{Block, DataTable, slug};
+
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::equivalence::{Equivalence, OneSidedTests};
 use crate::hypothesis::reading;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure::{EquivalenceInterval, equivalence_zone};
 use crate::report::section::Writer;
 use crate::report::tables;

@@ -1,5 +1,6 @@
 //! The hypotheses of the study file: in short, and one by one.
 
+use mimique_report::document::{Block, slug};
 use mimique_stats::Adjustment;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
@@ -7,7 +8,6 @@ use crate::hypothesis::decision::decision;
 use crate::hypothesis::other_clips::OtherClipsTests;
 use crate::hypothesis::reading;
 use crate::hypothesis::{HypothesisResult, is_two_way, test_hypothesis};
-use crate::report::document::{Block, slug};
 use crate::report::figure::conditions::people_by_condition;
 use crate::report::section::Writer;
 use crate::report::tables;

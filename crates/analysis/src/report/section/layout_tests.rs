@@ -1,6 +1,7 @@
 //! Tables of tests in the study's own layout: hypotheses, pairs, interactions, influences. As in the
 //! thesis stands beside or above recommended.
 
+use mimique_report::document::DataTable;
 use mimique_stats::Outcome;
 use mimique_study::TableLayout;
 use mimique_study::columns::ASSIGNED_CONDITION;
@@ -12,7 +13,6 @@ use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::trial_level;
 use crate::hypothesis::two_way;
 use crate::hypothesis::undefined::{TestOutcome, Why};
-use crate::report::document::DataTable;
 use crate::report::section::Writer;
 use crate::report::section::layouts::{Column, LayoutCell, Row};
 use crate::report::tables::{recommended_heading, thesis_heading};

@@ -1,5 +1,7 @@
 //! Tables in the study's own layout: means, matrices, and the choice among all layouts.
 
+use mimique_locale::Language;
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{Confusion, Factor, confusion};
 use mimique_study::{AnswerOfPair, KindOfQuestion as _, Layout, Measure as What, TableLayout};
 use serde::Serialize;
@@ -7,8 +9,6 @@ use serde::Serialize;
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::not_tested::of_pair_in_words;
 use crate::hypothesis::undefined::TestOutcome;
-use crate::language::Language;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::{Measure, MeasureKind};

@@ -1,5 +1,6 @@
 //! Sections of a report about measures: ratings, and any measure against the factors of the clips.
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{Factor, Proportion};
 use mimique_study::{AnswerOfPair, KindOfQuestion as _, Measure as What};
 
@@ -9,7 +10,6 @@ use crate::hypothesis::person_level::{self, Pair};
 use crate::hypothesis::reading;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::trial_level::TrialLevel;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure;
 use crate::report::results::TwoWay;
 use crate::report::section::Writer;

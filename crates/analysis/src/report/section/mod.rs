@@ -27,16 +27,16 @@ pub(crate) mod traces;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use mimique_locale::Language;
+use mimique_report::ReportFile;
+use mimique_report::document::{Block, DataTable, Document, Figure};
 use mimique_stats::{Proportion, proportion};
 use mimique_study::{KindOfQuestion as _, Study};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::hypothesis::HypothesisResult;
-use crate::language::Language;
-use crate::language::naming::Naming;
 use crate::mimicry::tables::FaceTables;
-use crate::report::ReportFile;
-use crate::report::document::{Block, DataTable, Document, Figure};
+use crate::naming::Naming;
 use crate::report::preview::Preview;
 use crate::report::replay;
 use crate::report::results::Results;

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use mimique_report::document::Block;
+
 use crate::hypothesis::reading;
-use crate::report::document::Block;
 use crate::report::section::Writer;
 
 impl Writer<'_> {

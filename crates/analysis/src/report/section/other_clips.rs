@@ -1,10 +1,10 @@
 //! Whether what a hypothesis found holds for other clips too: the tests, and the mixed model drawn.
 
+use mimique_report::document::{Block, slug};
 use mimique_stats::Outcome;
 
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::other_clips::ClipModel;
-use crate::report::document::{Block, slug};
 use crate::report::figure;
 use crate::report::section::Writer;
 use crate::report::tables;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{
     BradleyTerry, BradleyTerryOptions, Chosen, Compared, Outcome, PairedComparisons,
     ScreenedPerson, bradley_terry,
@@ -15,7 +16,6 @@ use crate::hypothesis::comparison::{Comparison, within};
 use crate::hypothesis::reading;
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::undefined::TestOutcome;
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure;
 use crate::report::section::Writer;
 use crate::report::section::measures::values_by_level;

@@ -3,14 +3,14 @@
 
 use std::collections::BTreeSet;
 
+use mimique_locale::Language;
+use mimique_report::document::Block;
 use mimique_stats::Outcome;
 use mimique_study::KindOfQuestion as _;
 
 use crate::hypothesis::decision::{EffectUnit, decision, effects};
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::{HypothesisResult, deciding_test, reading};
-use crate::language::Language;
-use crate::report::document::Block;
 use crate::report::results::AboutPeople;
 use crate::report::section::Writer;
 use crate::trials::rule::Rule;

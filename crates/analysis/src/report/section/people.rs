@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use mimique_report::document::{Block, DataTable};
 use mimique_stats::{Labelled, Outcome, describe};
 use mimique_study::columns::ASSIGNED_CONDITION;
 
-use crate::report::document::{Block, DataTable};
 use crate::report::figure::flow_chart::flow_chart;
 use crate::report::results::AboutPeople;
 use crate::report::section::{MOST_LEVELS, Writer};
@@ -99,7 +99,7 @@ impl Writer<'_> {
                         language.number(d.max)
                     ),
                 ),
-                Outcome::Undefined { reason } => language.why_undefined(reason),
+                Outcome::Undefined { reason } => reason.words(language),
             };
             return (AboutPeople::Numbers(description), words);
         }

@@ -1,9 +1,9 @@
 //! Recognition: confusion matrices, shares of right answers, comparisons.
 
+use mimique_report::document::{Block, slug};
 use mimique_stats::{Factor, confusion};
 use mimique_study::KindOfQuestion as _;
 
-use crate::report::document::{Block, slug};
 use crate::report::figure;
 use crate::report::results::NamedConfusion;
 use crate::report::section::Writer;

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{CategoryRoc, Numbers, Roc, roc};
 use mimique_study::KindOfQuestion as _;
 use serde::Serialize;
 
-use crate::report::document::{Block, DataTable, slug};
 use crate::report::figure::roc_curves;
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use mimique_locale::Language;
+use mimique_report::document::{Block, DataTable, Figure, slug};
 use mimique_stats::{Numbers, Outcome, resampled_interval, spearman};
 use mimique_study::Measure as What;
 use serde::Serialize;
 
-use crate::language::Language;
-use crate::report::document::{Block, DataTable, Figure, slug};
 use crate::report::figure::{ScatterPanel, scatter};
 use crate::report::preview::Preview;
 use crate::report::section::Writer;

@@ -1,12 +1,12 @@
 //! Response times and late frames.
 
+use mimique_locale::Language;
+use mimique_report::document::{Block, DataTable};
 use mimique_stats::Factor;
 use mimique_study::Measure as What;
 
 use crate::hypothesis::comparison::within;
 use crate::hypothesis::reading;
-use crate::language::Language;
-use crate::report::document::{Block, DataTable};
 use crate::report::figure;
 use crate::report::figure::people;
 use crate::report::results::LateFrames;

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use mimique_report::document::{DataTable, slug};
 use mimique_stats::{ClusterPermutation, ClusterPermutationOptions, Outcome, cluster_permutation};
 use mimique_study::TRACE_HZ;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -11,7 +12,6 @@ use serde::Serialize;
 
 use crate::hypothesis::reading::LEVEL;
 use crate::hypothesis::undefined::Why;
-use crate::report::document::{DataTable, slug};
 use crate::report::figure::TraceSpans;
 use crate::report::section::Writer;
 use crate::trials::measure::Measure;

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use mimique_report::document::slug;
 use mimique_stats::{Factor, t_quantile_upper};
 use mimique_study::TRACE_HZ;
 use serde::Serialize;
 
-use crate::report::document::slug;
 use crate::report::figure;
 use crate::report::section::Writer;
 use crate::report::section::trace_tests::{PersonCourses, TracePair, compared};

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use mimique_analysis::{
-    ExportError, Language, MeasuredFaces, MimicryError, Report, ReportOptions, analyze_with,
+    ExportError, MeasuredFaces, MimicryError, Report, ReportOptions, analyze_with,
 };
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::columns::{COURSE_COLUMNS, TRACK_COLUMNS};
 use mimique_study::{Study, TRACKED_SHAPES};

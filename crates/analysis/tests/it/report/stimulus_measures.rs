@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use mimique_analysis::{ExportError, Language, Report, ReportOptions, StimuliError, analyze_with};
+use mimique_analysis::{ExportError, Report, ReportOptions, StimuliError, analyze_with};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;

@@ -1,6 +1,7 @@
 //! The preregistration of a study whose power a test found.
 
-use mimique_analysis::{Language, Parameters, Power, Preregistration, preregistration};
+use mimique_analysis::{Parameters, Power, Preregistration, preregistration};
+use mimique_locale::Language;
 use mimique_study::Study;
 
 /// The text without a power curve.

@@ -1,6 +1,7 @@
 //! A report of an export in memory, and the people whom a test simulates.
 
-use mimique_analysis::{Language, Parameters, Report, analyze};
+use mimique_analysis::{Parameters, Report, analyze};
+use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::Study;
 use serde_json::Value;

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use anyhow::Context as _;
-use mimique_analysis::Language;
 use mimique_annotate::evaluate::{Judged, Summary};
 use mimique_annotate::{Decoding, Lesson, Method};
+use mimique_locale::Language;
 
 use super::corpus::{Corpus, CorpusOptions};
 use super::decoding::DecodeOptions;

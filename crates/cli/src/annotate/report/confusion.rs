@@ -1,7 +1,8 @@
 //! Confusion matrices: labels of the annotator against suggested ones.
 
-use mimique_analysis::Language;
-use mimique_analysis::components::{ConfusionRow, ConfusionWords, Figure, confusion_matrix, slug};
+use mimique_locale::Language;
+use mimique_report::document::{Figure, slug};
+use mimique_report::figure::{ConfusionRow, ConfusionWords, confusion_matrix};
 
 use super::scores::value;
 use super::words;

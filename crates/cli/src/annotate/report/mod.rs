@@ -10,9 +10,10 @@ mod words;
 use std::io::Write as _;
 use std::path::Path;
 
-use mimique_analysis::components::{Block, Document, document_files};
-use mimique_analysis::{Language, ReportFile};
 use mimique_annotate::evaluate::{Judged, Score, Summary};
+use mimique_locale::Language;
+use mimique_report::document::{Block, Document};
+use mimique_report::{ReportFile, document_files};
 use serde_json::{Value, json};
 
 use super::evaluate::{Column, Evaluation};

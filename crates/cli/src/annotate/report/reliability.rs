@@ -1,8 +1,9 @@
 //! How far probabilities hold: share of right answers against probability.
 
-use mimique_analysis::Language;
-use mimique_analysis::components::{Anchor, Axis, DataTable, Figure, Svg, slug};
 use mimique_annotate::calibration::{Reliability, ReliabilityBin};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure, slug};
+use mimique_report::svg::{Anchor, Axis, Svg};
 
 use super::scores::value;
 use super::words;

@@ -1,9 +1,9 @@
 //! The tables of an evaluation: scores beside the majority's, by label, by person, and the thesis'
 //! figure 4.4.
 
-use mimique_analysis::Language;
-use mimique_analysis::components::DataTable;
 use mimique_annotate::evaluate::{Score, Summary};
+use mimique_locale::Language;
+use mimique_report::document::DataTable;
 
 use super::words;
 use crate::annotate::evaluate::Evaluation;

@@ -1,9 +1,10 @@
 //! A timeline a take: what the annotator and the candidates say, and how probable the suggestion is.
 
-use mimique_analysis::Language;
-use mimique_analysis::components::{Anchor, Axis, DataTable, Figure, Svg, WIDTH, clipped, slug};
 use mimique_annotate::evaluate::true_segments;
 use mimique_annotate::{Mark, Marked};
+use mimique_locale::Language;
+use mimique_report::document::{DataTable, Figure, slug};
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH, clipped};
 
 use super::words;
 use crate::annotate::evaluate::Evaluation;

@@ -1,8 +1,8 @@
 //! The words of an evaluation, in each language of reports.
 
-use mimique_analysis::Language;
 use mimique_annotate::evaluate::{FEWEST, Score};
 use mimique_annotate::{Decoding, Kernel, Lesson, Method};
+use mimique_locale::Language;
 use mimique_stimulus::BorderRule;
 
 use crate::annotate::evaluate::{Column, ColumnKind, Split};

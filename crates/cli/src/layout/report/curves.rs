@@ -1,7 +1,7 @@
 //! Curves and tables of a comparison.
 
-use mimique_analysis::components::{Block, DataTable};
 use mimique_layout::{Comparison, CurveRow, RowTrial};
+use mimique_report::document::{Block, DataTable};
 
 use super::drawing::{Look, Series, curves};
 use super::figure;

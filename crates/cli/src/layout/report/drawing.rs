@@ -1,6 +1,6 @@
 //! The figures of a report on layouts.
 
-use mimique_analysis::components::{Anchor, Axis, Svg, WIDTH};
+use mimique_report::svg::{Anchor, Axis, Svg, WIDTH};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 14.0;

@@ -1,7 +1,7 @@
 //! What each marker is worth, and where it is put.
 
-use mimique_analysis::components::{Block, DataTable};
 use mimique_layout::Measures;
+use mimique_report::document::{Block, DataTable};
 
 use super::curves::curves_figure;
 use super::drawing::{Look, Series, bars};

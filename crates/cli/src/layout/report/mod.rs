@@ -6,9 +6,10 @@ mod markers;
 
 use std::path::Path;
 
-use mimique_analysis::components::{Block, DataTable, Document, Figure, document_files};
-use mimique_analysis::{Language, ReportFile};
 use mimique_layout::{Measures, Method};
+use mimique_locale::Language;
+use mimique_report::document::{Block, DataTable, Document, Figure};
+use mimique_report::{ReportFile, document_files};
 
 use super::args::Make;
 use super::inputs::blame;

@@ -3,7 +3,7 @@
 use axum::extract::{Extension, Path, Query, State};
 use axum::http::{HeaderMap, HeaderValue};
 use axum::response::Response;
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_storage::Role;
 use serde::Deserialize;
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_session::Standing;
 use mimique_storage::{Exclusion, Role, SessionRecord, StorageError};
 use mimique_study::Multilingual as _;

@@ -2,7 +2,7 @@
 
 use axum::response::Response;
 use maud::{Markup, html};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_storage::{AccountLink, LinkPurpose};
 
 use super::frame::{escaped, field, open_page, role_line, role_word};

@@ -3,7 +3,7 @@
 use axum::http::header;
 use axum::response::{Html, IntoResponse, Response};
 use maud::{DOCTYPE, Markup, html};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_storage::Role;
 use mimique_study::iso_time;
 

@@ -1,8 +1,7 @@
 //! The dashboard's words for how a session stands.
 
+use mimique_locale::Language;
 use mimique_session::Standing;
-
-use mimique_analysis::Language;
 
 /// The word of a standing in addresses of lists.
 pub(crate) fn list_word(standing: Standing) -> &'static str {

@@ -1,5 +1,7 @@
 //! `mimique test bradley-terry`: options, words, and the functions of R and Python.
 
+use mimique_locale::{format_number, format_p};
+
 use super::{BradleyTerry, BradleyTerryOptions, DefaultTest, WorthEstimates, bradley_terry};
 use crate::outcome::Outcome;
 use crate::procedure::arguments::{
@@ -12,7 +14,6 @@ use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::comparisons::{COMPARISON_OPTIONS, PairedComparisons};
 use crate::undefined::Undefined;
-use crate::words::{format_number, format_p};
 
 /// `--side`.
 pub(crate) const SIDE: ProcedureOption = ProcedureOption::one_of(

@@ -3,6 +3,7 @@
 mod fisher;
 mod independence;
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::{Tail, chi_square_upper};
@@ -14,7 +15,6 @@ use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::contingency::Contingency;
-use crate::words::{format_number, format_p};
 use fisher::fisher_two_sided;
 use independence::Independence;
 

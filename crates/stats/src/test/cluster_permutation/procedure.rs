@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use mimique_locale::format_number;
+
 use super::{ClusterPermutation, ClusterPermutationOptions, cluster_permutation};
 use crate::numerics::largest::FEWEST_PERMUTATIONS;
 use crate::procedure::arguments::{Arguments, ProcedureOption, SEED};
@@ -10,7 +12,6 @@ use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::sample::complete_rows;
-use crate::words::format_number;
 
 const DEFAULT_PERMUTATIONS: u64 = 5000;
 

@@ -1,5 +1,7 @@
 //! `mimique test equivalence`: options, words, and the functions of R and Python.
 
+use mimique_locale::{format_number, format_p};
+
 use super::{
     EquivalenceOfGroups, EquivalenceOfPairs, EquivalenceOptions, EquivalenceT, EquivalenceVerdict,
     equivalence_of_groups, equivalence_of_pairs,
@@ -13,7 +15,6 @@ use crate::refusal::{Refusal, Unfit};
 use crate::table::factor::Factor;
 use crate::table::pairs::{PAIR_OPTIONS, differences};
 use crate::table::{Numbers, Table};
-use crate::words::{format_number, format_p};
 
 /// Those of pairs, without which rows of two groups are independent.
 const COLUMNS: [ProcedureOption; 7] = [

@@ -1,5 +1,7 @@
 //! `mimique test mixed-model`.
 
+use mimique_locale::{format_number, format_p};
+
 use super::{MixedModel, MixedModelOptions, mixed_model};
 use crate::outcome::Outcome;
 use crate::procedure::arguments::{Arguments, ProcedureOption};
@@ -9,7 +11,6 @@ use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::factor::Factor;
-use crate::words::{format_number, format_p};
 
 /// `mimique test mixed-model`.
 pub(crate) const PROCEDURE: Procedure = Procedure {

@@ -1,6 +1,7 @@
 //! `mimique test psychometric`: options, words, and the functions of R and Python.
 
 use mimique_adaptive::Shape;
+use mimique_locale::format_number;
 use serde::Serialize;
 
 use super::{
@@ -16,7 +17,6 @@ use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::{Refusal, Unfit};
 use crate::table::Table;
 use crate::table::sample::complete_rows;
-use crate::words::format_number;
 
 /// `--function`.
 const FUNCTION: ProcedureOption = ProcedureOption::one_of(

@@ -1,5 +1,7 @@
 //! `mimique test reverse-correlation`.
 
+use mimique_locale::format_number;
+
 use super::{
     CategoryImages, GroupImage, ReverseCorrelation, ReverseCorrelationOptions, ReverseTrials,
     UnitImage, reverse_correlation,
@@ -11,7 +13,6 @@ use crate::procedure::lines::{self, Lines};
 use crate::procedure::{Answer, Procedure, Sample};
 use crate::refusal::Refusal;
 use crate::table::Table;
-use crate::words::format_number;
 
 const DEFAULT_BINS: u64 = 30;
 const DEFAULT_PERMUTATIONS: u64 = 1000;

@@ -6,6 +6,7 @@
 mod tails;
 mod variant;
 
+use mimique_locale::{format_number, format_p};
 use serde::Serialize;
 
 use crate::distributions::tail::Alternative;
@@ -22,7 +23,6 @@ use crate::table::Numbers;
 use crate::table::Table;
 use crate::table::pairs::{PAIR_OPTIONS, differences, rounded};
 use crate::undefined::Undefined;
-use crate::words::{format_number, format_p};
 use tails::{Counts, Tails};
 use variant::{Chosen, EXACT_UP_TO, VARIANT};
 pub use variant::{WilcoxonOptions, WilcoxonVariant};

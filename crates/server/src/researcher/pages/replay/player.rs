@@ -1,7 +1,7 @@
 //! What draws clips again: stages, strip of frames, playback. Its script is `static/researcher/replayed.js`.
 
 use maud::{Markup, html};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 
 /// What draws the clips again; the script puts it into the page that is shown.
 pub fn player(language: Language) -> Markup {

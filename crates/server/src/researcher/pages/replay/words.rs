@@ -1,6 +1,6 @@
 //! What the script of a replay says, in the reader's language; `{…}` stand for values.
 
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use serde_json::json;
 
 /// The words as JSON.

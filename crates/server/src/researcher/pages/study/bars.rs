@@ -1,7 +1,7 @@
 //! Counts as bars, and numbers as they are written beside them.
 
 use maud::{Markup, html};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 
 /// Counts under the name of a factor.
 pub(super) fn bars<'a>(caption: &str, counts: impl Iterator<Item = (&'a str, u64)>) -> Markup {

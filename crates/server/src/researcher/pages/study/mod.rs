@@ -10,7 +10,7 @@ mod trials;
 
 use axum::response::Response;
 use maud::{Markup, html};
-use mimique_analysis::Language;
+use mimique_locale::Language;
 use mimique_storage::{Overdue, Role};
 use mimique_study::Multilingual as _;
 

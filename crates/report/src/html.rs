@@ -1,9 +1,9 @@
 //! A report as one HTML file: no network, light, dark and print, for wide and narrow screens.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use mimique_locale::Language;
 
-use crate::language::Language;
-use crate::report::document::{Block, DataTable, DecisionTable, Document, Figure, is_number};
+use crate::document::{Block, DataTable, DecisionTable, Document, Figure, is_number};
 
 pub(crate) fn html(document: &Document, language: Language) -> String {
     let code = language.code();

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::document::DataTable;
+use crate::document::DataTable;
 
 /// Characters beyond which a cell is set as a paragraph.
 const LONG_CELL: usize = 48;

@@ -146,7 +146,7 @@ pub(crate) fn is_number(cell: &str) -> bool {
 }
 
 /// Rows as CSV with commas; they may be of different lengths.
-pub(crate) fn csv_text<R>(rows: impl IntoIterator<Item = R>) -> String
+pub fn csv_text<R>(rows: impl IntoIterator<Item = R>) -> String
 where
     R: IntoIterator,
     R::Item: AsRef<[u8]>,
@@ -173,7 +173,7 @@ pub fn slug(text: &str) -> String {
 }
 
 /// Text that is safe between tags and in quoted attributes.
-pub(crate) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

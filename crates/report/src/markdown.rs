@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::document::{Block, DataTable, Document};
+use crate::document::{Block, DataTable, Document};
 
 pub(crate) fn markdown(document: &Document) -> String {
     let mut text = format!("# {}\n\n{}\n", plain(&document.title), plain(&document.subtitle));

@@ -1,9 +1,8 @@
 //! What people read for factors and their levels.
 
+use mimique_locale::Language;
 use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{KindOfQuestion as _, Study};
-
-use crate::language::Language;
 
 /// Names of factors and levels in the report's language, from the study file.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 /// A count with an English noun whose plural ends in s.
 ///
 /// ```
-/// use mimique_study::text::counted;
+/// use mimique_locale::counted;
 ///
 /// assert_eq!(counted(1, "error"), "1 error");
 /// assert_eq!(counted(0, "error"), "0 errors");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::svg::short;
+use crate::svg::short;
 
 /// Width of the drawing; a line of the table is as high as a line of text in it.
 const WIDTH: f64 = 180.0;
@@ -11,15 +11,17 @@ const MARGIN: f64 = 8.0;
 
 /// One interval, on the scale on which it is drawn: 0 is no difference, and ±1 are the edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct DrawnInterval {
+pub struct DrawnInterval {
+    /// The estimate.
     pub estimate: f64,
+    /// The ends of its interval.
     pub ends: [f64; 2],
     /// Half the width of the zone of differences that do not matter.
     pub zone: Option<f64>,
 }
 
 /// The intervals below each other, around the line of no difference. `label` says the same in words.
-pub(crate) fn forest_row(intervals: &[DrawnInterval], label: &str) -> String {
+pub fn forest_row(intervals: &[DrawnInterval], label: &str) -> String {
     let height = LINE * intervals.len() as f64;
     let place = |value: f64| {
         let half = WIDTH / 2.0;
@@ -28,7 +30,7 @@ pub(crate) fn forest_row(intervals: &[DrawnInterval], label: &str) -> String {
     let mut svg = format!(
         r#"<svg viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" class="forest" role="img" aria-label="{label}">"#,
         height = short(height),
-        label = crate::report::document::escape(label)
+        label = crate::document::escape(label)
     );
     for (line, interval) in intervals.iter().enumerate() {
         let y = LINE * (line as f64 + 0.5);

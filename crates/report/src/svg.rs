@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::document::escape;
+use crate::document::escape;
 
 /// Width of every figure, so that text has the same size in all of them.
 pub const WIDTH: f64 = 440.0;
@@ -22,7 +22,7 @@ pub struct Svg {
 
 /// Where a mark leads.
 #[derive(Debug, Clone)]
-pub(crate) struct Link {
+pub struct Link {
     /// The address.
     pub address: String,
     /// What is found there.
@@ -31,7 +31,7 @@ pub(crate) struct Link {
 
 /// How the lines of a part of a drawing move.
 #[derive(Clone, Copy)]
-pub(crate) struct Moving<'i> {
+pub struct Moving<'i> {
     /// Identifier of the part, the only one of a page; where the part is pressed, the lines move.
     pub id: &'i str,
     /// The frame that is drawn where nothing moves.
@@ -134,7 +134,7 @@ impl Svg {
     }
 
     /// An area of a colour, see-through.
-    pub(crate) fn band(&mut self, outline: &[[f64; 2]], colour: &str) {
+    pub fn band(&mut self, outline: &[[f64; 2]], colour: &str) {
         let points: Vec<String> =
             outline.iter().map(|[x, y]| format!("{} {}", short(*x), short(*y))).collect();
         let _ = writeln!(
@@ -145,19 +145,19 @@ impl Svg {
     }
 
     /// Begins a part that is played when it is pressed.
-    pub(crate) fn begin_playable(&mut self, id: &str, label: &str) {
+    pub fn begin_playable(&mut self, id: &str, label: &str) {
         self.has_controls = true;
         let label = escape(label);
         let _ = writeln!(self.body, r##"<a href="#{id}" id="{id}" aria-label="{label}">"##);
     }
 
     /// Ends it.
-    pub(crate) fn end_playable(&mut self) {
+    pub fn end_playable(&mut self) {
         self.body.push_str("</a>\n");
     }
 
     /// What is drawn leads somewhere, where there is a link.
-    pub(crate) fn linked(&mut self, link: Option<&Link>, draw: impl FnOnce(&mut Self)) {
+    pub fn linked(&mut self, link: Option<&Link>, draw: impl FnOnce(&mut Self)) {
         let Some(Link { address, title }) = link else { return draw(self) };
         self.has_controls = true;
         let (address, title) = (escape(address), escape(title));
@@ -170,7 +170,7 @@ impl Svg {
     }
 
     /// A line at each of its frames.
-    pub(crate) fn moving_path(
+    pub fn moving_path(
         &mut self,
         frames: &[&[[f64; 2]]],
         closed: bool,
@@ -182,7 +182,7 @@ impl Svg {
     }
 
     /// An iris behind the opening between the lids, whose first frame is at rest: the opening's `number` in the face.
-    pub(crate) fn iris(&mut self, opening: &[&[[f64; 2]]], number: usize, moving: Moving<'_>) {
+    pub fn iris(&mut self, opening: &[&[[f64; 2]]], number: usize, moving: Moving<'_>) {
         let Some(rest) = opening.first().filter(|rest| !rest.is_empty()) else { return };
         let middle = |axis: usize| rest.iter().map(|p| p[axis]).sum::<f64>() / rest.len() as f64;
         let xs = || rest.iter().map(|point| point[0]);
@@ -209,7 +209,8 @@ impl Svg {
         );
     }
 
-    pub(crate) fn diamond(&mut self, x: f64, y: f64, radius: f64, class: &str) {
+    /// A filled square that stands on a corner.
+    pub fn diamond(&mut self, x: f64, y: f64, radius: f64, class: &str) {
         let _ = writeln!(
             self.body,
             r#"<path d="M{} {}l{r} {r}l-{r} {r}l-{r} -{r}z" class="{class}"/>"#,
@@ -301,7 +302,7 @@ const STYLE: &str = "\
 .mm-figure .dot{fill:#8cc4f2}.mm-figure .clip:hover *,.mm-figure .clip:focus-visible *{stroke:#8cc4f2}.mm-figure .person{stroke:#a9b2bc}.mm-figure .mean{stroke:#8cc4f2}.mm-figure .course,.mm-figure .thin{stroke:#8cc4f2}.mm-figure .box{fill:#1f4468;stroke:#8cc4f2}}";
 
 /// The colour of a shade from 0 (light) to 1 (dark).
-pub(crate) fn shade(shade: f64) -> String {
+pub fn shade(shade: f64) -> String {
     let shade = shade.clamp(0.0, 1.0);
     let channel = |i: usize| (LIGHTEST[i] + (DARKEST[i] - LIGHTEST[i]) * shade).round() as u8;
     format!("#{:02x}{:02x}{:02x}", channel(0), channel(1), channel(2))
@@ -309,7 +310,7 @@ pub(crate) fn shade(shade: f64) -> String {
 
 /// The colour of a value from -1 (orange) over 0 (nearly white) to 1 (blue): both are told apart by the colour-blind
 /// (Okabe and Ito).
-pub(crate) fn diverging(value: f64) -> String {
+pub fn diverging(value: f64) -> String {
     const MIDDLE: [f64; 3] = [245.0, 245.0, 245.0];
     let end = if value < 0.0 { [178.0, 72.0, 0.0] } else { [0.0, 88.0, 148.0] };
     let share = value.abs().clamp(0.0, 1.0);
@@ -318,7 +319,7 @@ pub(crate) fn diverging(value: f64) -> String {
 }
 
 /// Two decimals at most: figures are the same on every machine, and small.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }

@@ -1,9 +1,10 @@
 //! Worths of what was compared in pairs, from the highest to the lowest.
 
-use crate::language::Language;
-use crate::report::document::{DataTable, Figure};
-use crate::report::figure::svg::{Anchor, Axis, Svg, WIDTH, clipped};
-use crate::report::figure::{LEFT, RIGHT};
+use mimique_locale::Language;
+
+use crate::document::{DataTable, Figure};
+use crate::figure::{LEFT, RIGHT};
+use crate::svg::{Anchor, Axis, Svg, WIDTH, clipped};
 
 /// A level, its worth in just noticeable differences, and the ends of its interval.
 pub type Ranked = (String, f64, Option<[f64; 2]>);

@@ -1,9 +1,7 @@
-//! The language of a report.
+//! The languages that reports and pages of the laboratory are written in.
 
-pub(crate) mod naming;
-
-use mimique_stats::Undefined;
-use mimique_study::text::{counted_as, counted_in_french, primary_language};
+use crate::counted::{counted_as, counted_in_french};
+use crate::numbers::{format_number, format_p};
 
 /// English or French.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,24 +40,16 @@ impl Language {
     }
 
     /// A count with its noun, given for one and for many in English and in French.
-    pub(crate) fn counted(self, count: usize, english: [&str; 2], french: [&str; 2]) -> String {
+    pub fn counted(self, count: usize, english: [&str; 2], french: [&str; 2]) -> String {
         match self {
             Self::English => counted_as(count, english[0], english[1]),
             Self::French => counted_in_french(count, french[0], french[1]),
         }
     }
 
-    /// Why a statistic does not exist.
-    pub(crate) fn why_undefined(self, undefined: &Undefined) -> String {
-        match self {
-            Self::English => undefined.english(),
-            Self::French => undefined.french(),
-        }
-    }
-
     /// A number with this language's decimal mark.
     pub fn number(self, value: f64) -> String {
-        self.mark(mimique_stats::format_number(value))
+        self.mark(format_number(value))
     }
 
     /// A number with a fixed count of decimals.
@@ -75,7 +65,7 @@ impl Language {
     }
 
     /// `p = 0.012`, or `p < 0.001`.
-    pub(crate) fn p(self, p: f64) -> String {
+    pub fn p(self, p: f64) -> String {
         match p < 0.001 {
             true => format!("p {}", self.p_rounded(p)),
             false => format!("p = {}", self.p_rounded(p)),
@@ -83,7 +73,7 @@ impl Language {
     }
 
     /// `0.012`, or `< 0.001`.
-    pub(crate) fn p_rounded(self, p: f64) -> String {
+    pub fn p_rounded(self, p: f64) -> String {
         if p < 0.001 {
             return format!("< {}", self.mark("0.001".to_owned()));
         }
@@ -93,14 +83,14 @@ impl Language {
     }
 
     /// A p-value in a table: three decimals, or its order of magnitude.
-    pub(crate) fn p_cell(self, p: f64, ln_p: f64) -> String {
+    pub fn p_cell(self, p: f64, ln_p: f64) -> String {
         if p >= 0.001 {
             return self.p_rounded(p);
         }
         if p > 1e-300 {
             return self.mark(format!("{p:.1e}"));
         }
-        self.mark(mimique_stats::format_p(p, ln_p).trim_start_matches("= ").to_owned())
+        self.mark(format_p(p, ln_p).trim_start_matches("= ").to_owned())
     }
 
     fn mark(self, text: String) -> String {
@@ -108,5 +98,45 @@ impl Language {
             Self::English => text,
             Self::French => text.replace('.', ","),
         }
+    }
+}
+
+/// The language that a code begins with: `fr` of `fr-BE` (BCP 47, 2.2.1) and of `fr_BE`.
+pub fn primary_language(code: &str) -> &str {
+    code.split(['-', '_']).next().unwrap_or(code)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_language_is_known_by_the_code_that_it_begins_with() {
+        for (code, language) in [
+            ("en", Some(Language::English)),
+            ("en-GB", Some(Language::English)),
+            ("FR_be", Some(Language::French)),
+            ("de", None),
+            ("", None),
+        ] {
+            assert_eq!(Language::from_code(code), language, "{code}");
+        }
+    }
+
+    #[test]
+    fn p_is_never_zero_and_stays_on_its_side_of_five_percent() {
+        let [english, french] = [Language::English, Language::French];
+        assert_eq!(english.p(0.0123), "p = 0.012");
+        assert_eq!(french.p(0.000_01), "p < 0,001");
+        assert_eq!(english.p_rounded(0.0496), "0.0496");
+        assert_eq!(english.p_rounded(0.0504), "0.0504");
+        assert_eq!(french.p_cell(0.000_012_3, 0.000_012_3_f64.ln()), "1,2e-5");
+        assert_eq!(english.p_cell(0.0, -2000.0), "2.58e-869");
+    }
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(Language::English.fixed(-0.001, 2), "0.00");
+        assert_eq!(Language::French.fixed(-0.01, 2), "-0,01");
     }
 }

@@ -1,11 +1,14 @@
 //! Courses over time: panels below each other, with one axis of time.
 
-use crate::report::figure::people::{LEFT, RIGHT};
-use crate::report::figure::svg::{Anchor, Axis, Svg};
+use crate::svg::{Anchor, Axis, Svg, WIDTH};
 
+/// Left edge of the plotting area beside the numbers of an axis.
+pub const LEFT: f64 = 52.0;
+/// Its right edge.
+pub const RIGHT: f64 = WIDTH - 12.0;
 /// Colours that the colour-blind tell apart, and that stand on white and on black (Okabe and Ito), each
 /// with its dashes.
-pub(crate) const LINES: [(&str, &str); 4] =
+pub const LINES: [(&str, &str); 4] =
     [("#0072b2", "none"), ("#d55e00", "7 3"), ("#009e73", "2 3"), ("#cc79a7", "8 3 2 3")];
 const PANEL: f64 = 110.0;
 const GAP: f64 = 34.0;
