@@ -18,7 +18,8 @@
 //! | thesis 4.5: neighbours, support vector machines, forest | [`Neighbours`], [`Svm`], [`Forest`] |
 //! | short paper 6-8: a hidden Markov model a label, joined | [`Composite`] |
 //!
-//! The classifiers and hidden Markov models are our own, as no kept crate fits: linfa 0.8 does
+//! The classifiers and hidden Markov models are our own (the support vector machine's solver is
+//! [`mimique_stats::SupportVectorDual`]), because no maintained crate fits: linfa 0.8 does
 //! not build for wasm32 as it is, draws a forest's columns per tree and has support vector machines one
 //! against all; smartcore 0.7 has an approximate support vector machine, and its saved models break between
 //! versions; of the crates for hidden Markov models none has mixtures without LAPACK.
@@ -76,7 +77,6 @@ mod neighbours;
 mod numbers;
 mod one_against_one;
 mod rows;
-mod smo;
 pub mod stretches;
 mod take;
 mod tiles;

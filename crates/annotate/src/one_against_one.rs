@@ -1,11 +1,11 @@
 //! The support vector machine of several labels: one machine a pair of labels, which vote.
 
+use mimique_stats::{KernelMatrix, SupportVectorDual};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{above_zero, as_many, at_most};
 use crate::numbers::highest;
-use crate::smo::TwoClasses;
 use crate::{AnnotateError, ClassWeight, Examples, Kernel, Rows};
 
 /// What the user decides of a support vector machine.
@@ -172,15 +172,14 @@ fn fit_pair(
     let members: Vec<usize> = (0..examples.labels().len()).filter(of).collect();
     let own: Vec<usize> = members.iter().map(|&row| examples.labels()[row]).collect();
     let rows = examples.rows().select(members.iter().copied());
-    let problem = TwoClasses {
-        rows: rows.values(),
-        width: rows.width(),
-        sign: own.iter().map(|&label| if label == labels[0] { 1.0 } else { -1.0 }).collect(),
-        bound: own.iter().map(|&label| options.c * weights[label]).collect(),
-        kernel: options.kernel,
-        tolerance: options.tolerance,
-    };
-    let optimum = problem.solve()?;
+    let sign = own.iter().map(|&label| if label == labels[0] { 1.0 } else { -1.0 }).collect();
+    let bound = own.iter().map(|&label| options.c * weights[label]).collect();
+    let matrix = kernel_matrix(&rows, options.kernel);
+    let optimum = SupportVectorDual::classification(matrix, sign, bound, options.tolerance).solve();
+    if !optimum.converged {
+        let (steps, residual) = (optimum.steps, optimum.violation);
+        return Err(AnnotateError::NotConverged { method: "svm", steps, residual });
+    }
     let coefficients = members.into_iter().zip(optimum.coefficients).filter(|(_, a)| *a != 0.0);
     Ok(Pair {
         labels,
@@ -188,6 +187,19 @@ fn fit_pair(
         objective: optimum.objective,
         coefficients: coefficients.collect(),
     })
+}
+
+/// The kernels of all pairs of rows, computed when the solver asks for them.
+fn kernel_matrix(rows: &Rows, kernel: Kernel) -> KernelMatrix<impl Fn(usize, &mut [f64])> {
+    let values = rows.values();
+    let of = move |i: usize| &values[i * rows.width()..(i + 1) * rows.width()];
+    let own = |i: usize| {
+        let mut own = [0.0];
+        kernel.of_all(of(i), of(i), &mut own);
+        own[0]
+    };
+    let row = move |i: usize, out: &mut [f64]| kernel.of_all(values, of(i), out);
+    KernelMatrix { diagonal: (0..rows.len()).map(own).collect(), row }
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@
 //! LessonTake (plan, heart, weights) --Lesson--> rows, targets --Grid--> C, gamma --train--> model file
 //! ```
 //!
-//! The solver is linfa's; its answers are held against the optimality conditions here. It runs natively
-//! alone: what foretells is [`mimique_exertion::SupportVectors`], the same in the browser.
+//! The solver is [`mimique_stats::SupportVectorDual`]; the optimality conditions of each answer are computed again here.
+//! Training runs natively only; predictions are [`mimique_exertion::SupportVectors`], the same in the browser.
 //!
 //! # Example
 //!

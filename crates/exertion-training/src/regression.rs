@@ -1,17 +1,13 @@
-//! Epsilon support vector regression: linfa's solver, its answer held against the optimality conditions.
+//! Epsilon support vector regression with a Gaussian kernel; the optimality conditions of each answer are computed again
+//! from its coefficients.
 
-use linfa::DatasetBase;
-use linfa::traits::Fit;
-use linfa_svm::Svm;
-use mimique_exertion::SupportVectorParts;
-use ndarray::{Array1, Array2};
+use mimique_exertion::{SupportVectorParts, gaussian_kernels};
+use mimique_stats::{KernelMatrix, SupportVectorDual};
 
 use crate::TrainingError;
 
 /// Rows that are learnt from: below, there is nothing to learn; above, kernels fill the memory.
 pub const ROWS: [usize; 2] = [2, 6000];
-/// linfa asks for a tube of some width; this one is none to any number of a face.
-const NARROWEST_TUBE: f64 = 1e-12;
 
 /// minimise a'Ka/2 - a'y + epsilon |a|_1 over |a_i| <= C, sum a = 0, with K_ij = exp(-gamma |x_i - x_j|^2).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,19 +44,22 @@ impl EpsilonSvr {
     /// [`TrainingError`]: rows and targets that do not fit, numbers that are none, settings out of range.
     pub fn fit(&self, rows: &[&[f64]], targets: &[f64]) -> Result<Fitted, TrainingError> {
         self.check(rows, targets)?;
-        let width = rows[0].len();
-        let values: Vec<f64> = rows.iter().flat_map(|row| row.iter().copied()).collect();
-        let records = Array2::from_shape_vec((rows.len(), width), values)
-            .map_err(|_| TrainingError::Count { what: "features", found: 0, expected: width })?;
-        let dataset = DatasetBase::new(records, Array1::from_vec(targets.to_vec()));
-        let setting = |setting, value| TrainingError::Setting { setting, value, range: "above 0" };
-        let found = Svm::<f64, f64>::params()
-            .c_svr(self.c, Some(self.epsilon.max(NARROWEST_TUBE)))
-            .eps(self.tolerance)
-            .gaussian_kernel(1.0 / self.gamma)
-            .fit(&dataset)
-            .map_err(|_| setting("C", self.c))?;
-        Ok(self.held_against_the_conditions(rows, targets, found.alpha, -found.rho))
+        let by_feature = |k: usize| rows.iter().map(|row| row[k]).collect();
+        let features: Vec<Vec<f64>> = (0..rows[0].len()).map(by_feature).collect();
+        let kernel_row = |i: usize, out: &mut [f64]| {
+            gaussian_kernels(self.gamma, &features, rows[i].iter().copied(), out);
+        };
+        let matrix = KernelMatrix { diagonal: vec![1.0; rows.len()], row: &kernel_row };
+        let (c, epsilon, tolerance) = (self.c, self.epsilon, self.tolerance);
+        let found = SupportVectorDual::regression(matrix, targets, c, epsilon, tolerance).solve();
+        // Predictions without the constant: of the coefficients alone, so that rounding in the solver's steps shows.
+        let mut sums = vec![0.0; rows.len()];
+        let mut kernels = vec![0.0; rows.len()];
+        for (j, a) in found.coefficients.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+            kernel_row(j, &mut kernels);
+            sums.iter_mut().zip(&kernels).for_each(|(sum, kernel)| *sum += a * kernel);
+        }
+        Ok(self.with_violation(targets, &sums, found.coefficients, found.bias))
     }
 
     fn check(&self, rows: &[&[f64]], targets: &[f64]) -> Result<(), TrainingError> {
@@ -96,25 +95,22 @@ impl EpsilonSvr {
         Ok(())
     }
 
-    /// Objective and violation of an answer. With r = y - Ka every coefficient bounds the constant b: inside
+    /// Adds the objective and the violation to an answer; `sums` are Ka. With r = y - Ka every coefficient bounds the constant b: inside
     /// the tube r - epsilon <= b <= r + epsilon, between its bounds b lies on one side of the tube, at C it
     /// lies beyond.
-    fn held_against_the_conditions(
+    fn with_violation(
         &self,
-        rows: &[&[f64]],
         targets: &[f64],
+        sums: &[f64],
         coefficients: Vec<f64>,
         b: f64,
     ) -> Fitted {
-        let used: Vec<usize> = (0..rows.len()).filter(|&i| coefficients[i] != 0.0).collect();
         let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut objective = 0.0;
         let mut at_bound = false;
-        for (i, row) in rows.iter().enumerate() {
-            let a = coefficients[i];
-            let f: f64 = used.iter().map(|&j| coefficients[j] * self.kernel(row, rows[j])).sum();
-            let r = targets[i] - f;
-            objective += 0.5 * a * f - a * targets[i] + self.epsilon * a.abs();
+        for ((target, sum), &a) in targets.iter().zip(sums).zip(&coefficients) {
+            let r = target - sum;
+            objective += 0.5 * a * sum - a * target + self.epsilon * a.abs();
             let bound = a.abs() >= self.c * (1.0 - 1e-12);
             at_bound |= bound;
             let side = if a > 0.0 { r - self.epsilon } else { r + self.epsilon };
@@ -132,11 +128,6 @@ impl EpsilonSvr {
         }
         let violation = (least - most).max(0.0);
         Fitted { coefficients, b, objective, violation, at_bound }
-    }
-
-    fn kernel(&self, a: &[f64], b: &[f64]) -> f64 {
-        let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-        (-self.gamma * squares.sum::<f64>()).exp()
     }
 }
 
@@ -207,6 +198,60 @@ mod tests {
         assert!(small.at_bound && !free.at_bound && !freer.at_bound);
         assert!(free.coefficients.iter().all(|a| a.abs() < 1e3));
         assert!((free.objective - freer.objective).abs() < 1e-6 * free.objective.abs());
+    }
+
+    #[test]
+    fn scikit_learn_finds_the_same_regressions() {
+        // Objective, constant, number of vectors and predictions by SVR of scikit-learn 1.9.1 with tol=1e-10.
+        let expected = [
+            (
+                (2.0, 0.5, 1.0),
+                (-590.6892014346, -2.5603419404, 42),
+                [3.3635315268, 13.0435438680, -6.8115913694],
+            ),
+            (
+                (500.0, 0.1, 0.25),
+                (-22040.7940840175, -7.0531045973, 57),
+                [3.2600297899, 18.2567912888, -14.1037499073],
+            ),
+            (
+                (1e4, 2.0, 0.0),
+                (-2194.2154564743, -1.8513520490, 60),
+                [3.3002832095, 18.7954622238, -2.6793715441],
+            ),
+            (
+                (0.05, 0.3, 3.0),
+                (-24.0999447971, -2.3203071449, 50),
+                [-2.1385009665, -1.7199832942, -2.6308436073],
+            ),
+        ];
+        let sixteenth =
+            |i: u32, factor: u32, shift: u32| f64::from((factor * i + shift) % 64) / 16.0 - 2.0;
+        let x: Vec<Vec<f64>> =
+            (0..60).map(|i| vec![sixteenth(i, 37, 0), sixteenth(i, 23, 5)]).collect();
+        let y: Vec<f64> = (0..60u32)
+            .zip(&x)
+            .map(|(i, x)| 10.0 * x[0] - 3.0 * x[1] * x[1] + x[0] * x[1] + f64::from(11 * i % 7))
+            .collect();
+        for ((c, gamma, epsilon), (objective, b, vectors), predictions) in expected {
+            let svr = EpsilonSvr { c, gamma, epsilon, tolerance: 1e-9 };
+            let fitted = svr.fit(&rows(&x), &y).unwrap();
+            // LIBSVM, which scikit-learn calls, stores kernels with the 24 bits of f32.
+            let largest = fitted.coefficients.iter().fold(0.0f64, |most, a| most.max(a.abs()));
+            let rounding = 60.0 * largest * 0.5f64.powi(24);
+            let near = |found: f64, expected: f64, what: &str| {
+                let most = rounding.max(1e-7 * expected.abs());
+                assert!((found - expected).abs() < most, "{svr:?} {what}: {found}, not {expected}");
+            };
+            near(fitted.objective, objective, "objective");
+            near(fitted.b, b, "constant");
+            assert_eq!(fitted.coefficients.iter().filter(|a| **a != 0.0).count(), vectors);
+            let model = fitted.parts(&rows(&x), gamma, vec![0.0; 2], vec![1.0; 2]);
+            let model = SupportVectors::new(model).unwrap();
+            for (at, expected) in [[0.1, -0.2], [1.5, 1.0], [-3.0, 0.5]].iter().zip(predictions) {
+                near(model.predict(at).unwrap(), expected, "prediction");
+            }
+        }
     }
 
     #[test]

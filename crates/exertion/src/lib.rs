@@ -115,5 +115,5 @@ pub use plan::{Part, Plan};
 pub use rules::{Curves, Features, rules};
 pub use samples::{LONGEST_GAP_S, at_whole_seconds, whole_seconds, with_gaps_at_whole_seconds};
 pub use shapes::ShapeTable;
-pub use support_vectors::{SupportVectorParts, SupportVectors};
+pub use support_vectors::{SupportVectorParts, SupportVectors, gaussian_kernels};
 pub use work::{Accumulated, BodyWork, Convention};

@@ -145,22 +145,33 @@ impl SupportVectors {
 
     /// y of a row as long as the features, with room for a number a vector.
     pub(crate) fn predict_into(&self, x: &[f64], scratch: &mut Vec<f64>) -> f64 {
-        scratch.clear();
         scratch.resize(self.vectors(), 0.0);
-        for (k, own) in self.vectors.iter().enumerate() {
-            let z = (x[k] - self.offset[k]) / self.scale[k];
-            for (distance, vector) in scratch.iter_mut().zip(own) {
-                let way = z - vector;
-                *distance += way * way;
-            }
-        }
-        for distance in scratch.iter_mut() {
-            *distance *= -self.gamma;
-        }
-        exp_all(scratch);
+        let z = (0..x.len()).map(|k| (x[k] - self.offset[k]) / self.scale[k]);
+        gaussian_kernels(self.gamma, &self.vectors, z, scratch);
         let products = scratch.iter().zip(&self.coefficients).map(|(kernel, a)| kernel * a);
         self.b + products.sum::<f64>()
     }
+}
+
+/// Writes exp(-gamma |z - v|^2) for each vector v. `vectors` has one list per feature, with one number per vector; `z` has
+/// one number per feature.
+pub fn gaussian_kernels(
+    gamma: f64,
+    vectors: &[Vec<f64>],
+    z: impl Iterator<Item = f64>,
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for (own, z) in vectors.iter().zip(z) {
+        for (distance, vector) in out.iter_mut().zip(own) {
+            let way = z - vector;
+            *distance += way * way;
+        }
+    }
+    for distance in out.iter_mut() {
+        *distance *= -gamma;
+    }
+    exp_all(out);
 }
 
 const KEYS: [&str; 6] = ["gamma", "b", "offset", "scale", "vectors", "coefficients"];

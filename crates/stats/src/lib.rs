@@ -43,6 +43,7 @@ pub use numerics::dot;
 pub use numerics::largest::FEWEST_PERMUTATIONS;
 pub use numerics::minimise::{Minimum, Stop, minimise};
 pub use numerics::random::Stream;
+pub use numerics::support_vector_dual::{DualOptimum, KernelMatrix, SupportVectorDual};
 pub use outcome::{Labelled, Outcome};
 pub use procedure::arguments::{Arguments, Choice, ProcedureOption, Required, Takes};
 pub use procedure::row::{Term, TestNames, TestResult, TestRow};

@@ -128,7 +128,7 @@ pub(super) fn instant(text: &str, byte: u64) -> Result<f64, ReadError> {
     let zoned = text.parse::<jiff::Timestamp>().ok();
     let instant = zoned.or_else(|| {
         let local = text.parse::<jiff::civil::DateTime>().ok()?;
-        Some(local.to_zoned(jiff::tz::TimeZone::UTC).ok()?.timestamp())
+        jiff::tz::Offset::UTC.to_timestamp(local).ok()
     });
     instant.map(|instant| instant.as_nanosecond() as f64 / 1e9).ok_or_else(|| {
         let what = format!("time {:?} is none", shortened(text));

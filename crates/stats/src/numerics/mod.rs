@@ -1,10 +1,11 @@
-//! Numerics that several statistics share: sums, minima, random streams, largest statistics of permutations, and the cones in which a likelihood
-//! has no maximum.
+//! Numerics that several statistics share: sums, minima, random streams, support vector machines, largest statistics of permutations, and the cones in
+//! which a likelihood has no maximum.
 
 pub(crate) mod largest;
 pub(crate) mod minimise;
 pub(crate) mod random;
 pub(crate) mod recession;
+pub(crate) mod support_vector_dual;
 
 /// Numbers that are added side by side, so that processors can: always as many, so that the sum is
 /// the same bits everywhere.

@@ -7,6 +7,7 @@ use std::process::Command;
 
 use mimique_test_support::repository;
 use serde_json::Value;
+use toml::Table;
 
 /// The words in quotes of the list that follows `start`.
 fn listed(text: &str, start: &str) -> BTreeSet<String> {
@@ -173,4 +174,69 @@ fn every_dependency_is_one_that_we_may_use() {
     }
     assert!(seen > 100, "{seen} dependencies");
     assert!(wrong.is_empty(), "{wrong:#?}\nchange the dependency, or deny.toml with a reason");
+}
+
+/// The names of the dependencies that a manifest takes from the workspace's table, those of single targets included.
+fn taken_from_workspace(manifest: &Table) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for (key, value) in manifest {
+        let Some(value) = value.as_table() else { continue };
+        if matches!(key.as_str(), "dependencies" | "dev-dependencies" | "build-dependencies") {
+            let inherited = |spec: &toml::Value| {
+                spec.get("workspace").and_then(toml::Value::as_bool).unwrap_or_default()
+            };
+            names.extend(value.iter().filter(|(_, spec)| inherited(spec)).map(|own| own.0.clone()));
+        } else {
+            names.extend(taken_from_workspace(value));
+        }
+    }
+    names
+}
+
+/// The manifests of the workspace's members.
+fn member_manifests(workspace: &Table) -> Vec<Table> {
+    let members = workspace["workspace"]["members"].as_array().expect("members");
+    let mut folders = Vec::new();
+    for member in members.iter().filter_map(toml::Value::as_str) {
+        match member.strip_suffix("/*") {
+            Some(parent) => {
+                let entries = std::fs::read_dir(repository().join(parent)).expect(parent);
+                folders.extend(entries.map(|entry| entry.expect(parent).path()));
+            }
+            None => folders.push(repository().join(member)),
+        }
+    }
+    let texts =
+        folders.iter().filter_map(|dir| std::fs::read_to_string(dir.join("Cargo.toml")).ok());
+    texts.map(|text| text.parse().expect("a manifest")).collect()
+}
+
+#[test]
+fn dependencies_of_all_kinds_and_targets_are_found() {
+    let manifest = r#"
+        [dependencies]
+        a.workspace = true
+        b = "1"
+        c = { workspace = true, optional = true }
+        [dev-dependencies]
+        d.workspace = true
+        [target.'cfg(unix)'.dependencies]
+        e = { workspace = true, features = ["f"] }
+        [lints]
+        workspace = true
+    "#;
+    let found = taken_from_workspace(&manifest.parse().expect("a manifest"));
+    assert_eq!(found, BTreeSet::from(["a", "c", "d", "e"].map(str::to_owned)));
+}
+
+#[test]
+fn every_dependency_of_the_workspace_has_a_user() {
+    let text = std::fs::read_to_string(repository().join("Cargo.toml")).expect("Cargo.toml");
+    let workspace: Table = text.parse().expect("a manifest");
+    let listed = workspace["workspace"]["dependencies"].as_table().expect("dependencies");
+    let manifests = member_manifests(&workspace);
+    assert!(manifests.len() > 30 && listed.len() > 50, "{} {}", manifests.len(), listed.len());
+    let used: BTreeSet<String> = manifests.iter().flat_map(taken_from_workspace).collect();
+    let unused: Vec<&String> = listed.keys().filter(|name| !used.contains(*name)).collect();
+    assert!(unused.is_empty(), "{unused:?}: remove them from [workspace.dependencies]");
 }
