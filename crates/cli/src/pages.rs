@@ -5,14 +5,9 @@ use std::path::Path;
 use mimique_server::{Assets, AssetsError, EmbeddedFile};
 
 /// The pages of a folder (`--web-dir`), or else those embedded in the program.
-pub fn assets(folder: Option<&Path>) -> Result<Assets, AssetsError> {
+pub fn assets(folder: Option<&Path>, embedded: &[EmbeddedFile]) -> Result<Assets, AssetsError> {
     match folder {
         Some(folder) => Assets::from_folder(folder),
-        None => Assets::embedded(mimique_pages::FILES.iter().map(|file| EmbeddedFile {
-            name: file.name,
-            raw: file.raw,
-            brotli: file.brotli,
-            gzip: file.gzip,
-        })),
+        None => Assets::embedded(embedded),
     }
 }

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use mimique_avatar_files::AvatarSettings;
-use mimique_server::{Access, App, Assets, PackStore, StudioFile, StudioFiles, StudioRole, serve};
+use mimique_server::{
+    Access, App, EmbeddedFile, PackStore, StudioFile, StudioFiles, StudioRole, serve,
+};
 use mimique_storage::Storage;
 use serde_json::json;
 use tokio::net::TcpListener;
@@ -34,8 +36,8 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
-    let assets = crate::pages::assets(args.web_dir.as_deref())?;
+pub fn run(args: Args, pages: &[EmbeddedFile], json: bool) -> anyhow::Result<()> {
+    let assets = crate::pages::assets(args.web_dir.as_deref(), pages)?;
     let files = given(&args)?;
     // Studies that the studio makes are hosted for as long as it is open.
     let folder = tempfile::tempdir().context("a folder for what the studio makes")?;

@@ -11,7 +11,8 @@ use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_locale::counted;
 use mimique_server::{
-    Access, App, Assets, HostedStudy, Hosting, Network, PackStore, Settings, Stage, prepare_hosting,
+    Access, App, Assets, EmbeddedFile, HostedStudy, Hosting, Network, PackStore, Settings, Stage,
+    prepare_hosting,
 };
 use mimique_stimulus::Places;
 use mimique_storage::{Storage, durable_file};
@@ -144,14 +145,14 @@ impl Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
+pub fn run(args: Args, pages: &[EmbeddedFile], json: bool) -> anyhow::Result<()> {
     tracing_subscriber::fmt()
         .with_writer(std::io::stderr)
         .with_target(false)
         .with_max_level(tracing::Level::INFO)
         .init();
     let settings = args.settings()?;
-    let assets = crate::pages::assets(args.web_dir.as_deref())?;
+    let assets = crate::pages::assets(args.web_dir.as_deref(), pages)?;
     let cannot_listen =
         || format!("{}: cannot listen there; choose another address by --listen", args.listen);
     // A port that is taken is said before the stimuli are prepared.

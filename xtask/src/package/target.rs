@@ -143,7 +143,7 @@ impl Target {
         target().join(self.triple).join("release").join(self.program())
     }
 
-    /// Name of the archive and of the folder in it: what `cargo binstall` is told in `crates/cli/Cargo.toml`.
+    /// Name of the archive and of the folder in it: what `cargo binstall` is told in `crates/mimique/Cargo.toml`.
     pub fn archive_stem(&self) -> String {
         format!("{NAME}-{VERSION}-{}", self.triple)
     }
@@ -213,7 +213,7 @@ mod tests {
     /// What `cargo binstall` makes of its templates is the name of an archive.
     #[test]
     fn cargo_binstall_finds_the_archives() {
-        let manifest = crate::process::root().join("crates/cli/Cargo.toml");
+        let manifest = crate::process::root().join("crates/mimique/Cargo.toml");
         let text = std::fs::read_to_string(manifest).unwrap();
         let value = |key: &str| {
             let line =

@@ -28,7 +28,7 @@ use anyhow::{Context as _, ensure};
 use mimique_analysis::{Report, ReportOptions, analyze_with};
 use mimique_locale::{Language, counted, counted_as};
 use mimique_server::export::stimuli_of;
-use mimique_server::{Assets, HostedStudy, Hosting, Stage};
+use mimique_server::{Assets, EmbeddedFile, HostedStudy, Hosting, Stage};
 use mimique_session::flow::Plays;
 use mimique_session::rows::TidyForm;
 use mimique_stats::Table;
@@ -83,14 +83,14 @@ struct Capsule<'a> {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, json: bool) -> anyhow::Result<()> {
+pub fn run(args: &Args, pages: &[EmbeddedFile], json: bool) -> anyhow::Result<()> {
     let place = |path: &Path| path.display().to_string();
     ensure!(
         args.out.extension().is_some_and(|end| end.eq_ignore_ascii_case("zip")),
         "{}: a capsule is a ZIP archive; give --out a name that ends in .zip",
         place(&args.out)
     );
-    let assets = crate::pages::assets(args.web_dir.as_deref())?;
+    let assets = crate::pages::assets(args.web_dir.as_deref(), pages)?;
     let checked = checked_study(&args.study)?;
     let logs = Logs::read(&args.events).with_context(|| place(&args.events))?;
     let answers = Answers::read(&args.export, checked.study(), &logs, args.keep_texts)

@@ -20,7 +20,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use mimique_server::{Assets, HostedStudy, Stage};
+use mimique_server::{Assets, EmbeddedFile, HostedStudy, Stage};
 use mimique_session::{SiteFile, Standing};
 use mimique_storage::durable_file;
 use mimique_study::{CheckedStudy, Multilingual as _, Severity, StaticHosting, Study};
@@ -53,8 +53,8 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
-    let assets = crate::pages::assets(args.web_dir.as_deref())?;
+pub fn run(args: Args, pages: &[EmbeddedFile], json: bool) -> anyhow::Result<()> {
+    let assets = crate::pages::assets(args.web_dir.as_deref(), pages)?;
     let place = || args.out.display().to_string();
     is_free(&args)?;
     let checked = checked_study(&args.study)?;

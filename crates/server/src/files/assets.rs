@@ -60,12 +60,11 @@ pub enum AssetsError {
 
 impl Assets {
     /// The pages inside the program; an error if it was compiled before the pages were built.
-    pub fn embedded(files: impl IntoIterator<Item = EmbeddedFile>) -> Result<Self, AssetsError> {
-        let mut files = files.into_iter().peekable();
-        if files.peek().is_none() {
+    pub fn embedded(files: &[EmbeddedFile]) -> Result<Self, AssetsError> {
+        if files.is_empty() {
             return Err(AssetsError::NotEmbedded);
         }
-        Self::new(files.map(|file| {
+        Self::new(files.iter().map(|file| {
             let stored = StaticFile {
                 content_type: content_type(file.name),
                 raw: Bytes::from_static(file.raw),

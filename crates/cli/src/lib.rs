@@ -47,6 +47,7 @@ mod vertices;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+pub use mimique_server::EmbeddedFile;
 
 /// What do people see in an avatar's face? Solve, show, ask, keep, compute.
 #[derive(Parser)]
@@ -125,7 +126,9 @@ enum Command {
     Verify(verify::Args),
 }
 
-fn main() -> ExitCode {
+/// Runs the command of the process's arguments and reports its errors. `pages` are the web pages that the program embeds;
+/// commands that serve or export pages use them unless they are given a folder (`--web-dir`).
+pub fn run(pages: &[EmbeddedFile]) -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(usage) => {
@@ -135,8 +138,8 @@ fn main() -> ExitCode {
     };
     let json = cli.json;
     let outcome = match cli.command {
-        Command::Serve(args) => serve::run(args, json),
-        Command::Preview(args) => preview::run(args, json),
+        Command::Serve(args) => serve::run(args, pages, json),
+        Command::Preview(args) => preview::run(args, pages, json),
         Command::New(args) => new::run(*args, json),
         Command::Check(args) => check::run(args, json),
         Command::Order(args) => order::run(args, json),
@@ -154,8 +157,8 @@ fn main() -> ExitCode {
         Command::Arena(args) => arena::run(*args, json),
         Command::Account(args) => account::run(args, json),
         Command::Export(args) => export::run(args, json),
-        Command::ExportSite(args) => export_site::run(args, json),
-        Command::Capsule(args) => capsule::run(&args, json),
+        Command::ExportSite(args) => export_site::run(args, pages, json),
+        Command::Capsule(args) => capsule::run(&args, pages, json),
         Command::Import(args) => import::run(args, json),
         Command::Backup(args) => backup::run(args, json),
         Command::Restore(args) => restore::run(args, json),
