@@ -32,24 +32,30 @@ fn main() -> io::Result<()> {
             read => read?,
         };
         let hash = hex::encode(Sha256::digest(&bytes));
-        let brotli = form(&packed.join(format!("{hash}.br")));
-        let gzip = form(&packed.join(format!("{hash}.gz")));
+        let brotli = form(packed.join(format!("{hash}.br")));
+        let gzip = form(packed.join(format!("{hash}.gz")));
+        // A file with a gzip form is unpacked when the program starts, and not embedded twice.
+        let raw = if gzip.is_some() { None } else { Some(path) };
         let _ = writeln!(
             table,
-            "    EmbeddedFile {{ name: {name:?}, raw: include_bytes!({path:?}), brotli: {brotli}, gzip: {gzip} }},"
+            "    EmbeddedFile {{ name: {name:?}, raw: {}, brotli: {}, gzip: {} }},",
+            included(raw),
+            included(brotli),
+            included(gzip)
         );
     }
     table.push_str("]\n");
     fs::write(variable("OUT_DIR").join("embedded_files.rs"), table)
 }
 
-/// The Rust expression that includes a compressed form. There is none if `cargo xtask web` has not made it, and an empty
-/// file means that compression does not pay.
-fn form(path: &Path) -> String {
-    match fs::metadata(path) {
-        Ok(found) if found.len() > 0 => format!("Some(include_bytes!({path:?}))"),
-        _ => "None".into(),
-    }
+/// A compressed form, if there is one: `cargo xtask web` leaves the file empty if compression does not pay.
+fn form(path: PathBuf) -> Option<PathBuf> {
+    fs::metadata(&path).is_ok_and(|found| found.len() > 0).then_some(path)
+}
+
+/// The Rust expression of a file's content.
+fn included(path: Option<PathBuf>) -> String {
+    path.map_or_else(|| "None".into(), |path| format!("Some(include_bytes!({path:?}))"))
 }
 
 /// The folder of the finished pages, as `cargo xtask web` chooses it.

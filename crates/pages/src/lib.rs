@@ -7,8 +7,8 @@
 pub struct EmbeddedFile {
     /// Path below the folder of the pages, such as `style/style.css`.
     pub name: &'static str,
-    /// The content.
-    pub raw: &'static [u8],
+    /// The content, unless there is a gzip form that it can be unpacked from.
+    pub raw: Option<&'static [u8]>,
     /// The brotli form, where it saves at least a twentieth.
     pub brotli: Option<&'static [u8]>,
     /// The gzip form, where it saves at least a twentieth.

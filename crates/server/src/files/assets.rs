@@ -2,7 +2,7 @@
 //! files, so that they can be kept for ever and a new build is never mixed with an old one.
 
 use std::collections::BTreeMap;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use axum::body::Bytes;
@@ -18,12 +18,24 @@ use crate::participant::first_page::first_page;
 pub struct EmbeddedFile {
     /// Path below the folder of the pages.
     pub name: &'static str,
-    /// The content.
-    pub raw: &'static [u8],
+    /// The content, unless there is a gzip form that it can be unpacked from.
+    pub raw: Option<&'static [u8]>,
     /// The brotli form, where it saves at least a twentieth.
     pub brotli: Option<&'static [u8]>,
     /// The gzip form, where it saves at least a twentieth.
     pub gzip: Option<&'static [u8]>,
+}
+
+impl EmbeddedFile {
+    /// The content; an error if neither it nor a readable gzip form is embedded.
+    fn content(&self) -> io::Result<Bytes> {
+        if let Some(raw) = self.raw {
+            return Ok(Bytes::from_static(raw));
+        }
+        let mut raw = Vec::new();
+        flate2::read::GzDecoder::new(self.gzip.unwrap_or_default()).read_to_end(&mut raw)?;
+        Ok(raw.into())
+    }
 }
 
 /// The pages' files by name.
@@ -42,6 +54,14 @@ pub enum AssetsError {
          or give their folder by --web-dir"
     )]
     NotEmbedded,
+    /// An embedded page cannot be unpacked.
+    #[error("the page {name} in this binary is damaged ({error}); install the program again")]
+    Damaged {
+        /// The file.
+        name: &'static str,
+        /// What went wrong.
+        error: io::Error,
+    },
     /// The folder given cannot be read.
     #[error("{folder}: {error}; give the folder that `cargo xtask web` fills")]
     Folder {
@@ -64,15 +84,18 @@ impl Assets {
         if files.is_empty() {
             return Err(AssetsError::NotEmbedded);
         }
-        Self::new(files.iter().map(|file| {
+        let stored = files.iter().map(|file| {
+            let raw =
+                file.content().map_err(|error| AssetsError::Damaged { name: file.name, error })?;
             let stored = StaticFile {
                 content_type: content_type(file.name),
-                raw: Bytes::from_static(file.raw),
+                raw,
                 brotli: file.brotli.map(Bytes::from_static),
                 gzip: file.gzip.map(Bytes::from_static),
             };
-            (file.name.to_owned(), stored)
-        }))
+            Ok((file.name.to_owned(), stored))
+        });
+        Self::new(stored.collect::<Result<Vec<_>, AssetsError>>()?)
     }
 
     /// The pages in a folder, read once.
@@ -184,6 +207,35 @@ mod tests {
     fn the_hash_follows_the_content() {
         assert_eq!(pages("a{}").prefix(), pages("a{}").prefix());
         assert_ne!(pages("a{}").prefix(), pages("b{}").prefix());
+    }
+
+    #[test]
+    fn embedded_pages_are_those_of_the_folder() {
+        let style = "a{}".repeat(100).into_bytes().leak();
+        let gzip = compression::gzip(style).unwrap().unwrap().leak();
+        let raw = |name, raw: &'static [u8]| EmbeddedFile {
+            name,
+            raw: Some(raw),
+            brotli: None,
+            gzip: None,
+        };
+        let packed = |gzip: &'static [u8]| EmbeddedFile {
+            name: "style/style.css",
+            raw: None,
+            brotli: None,
+            gzip: Some(gzip),
+        };
+        let page =
+            raw("participant/index.html", b"<html lang=\"{{lang}}\"><title>{{title}}</title>");
+        let preview = raw("researcher/preview.html", b"<p>{{assets}}");
+        let embedded = Assets::embedded(&[page, preview, packed(gzip)]).unwrap();
+        assert_eq!(embedded.hash(), pages(&"a{}".repeat(100)).hash());
+        let damaged = Assets::embedded(&[page, packed(&gzip[..20])]).unwrap_err().to_string();
+        assert!(
+            damaged.starts_with("the page style/style.css in this binary is damaged"),
+            "{damaged}"
+        );
+        assert!(matches!(Assets::embedded(&[]), Err(AssetsError::NotEmbedded)));
     }
 
     #[test]
