@@ -15,6 +15,8 @@ use sha2::{Digest, Sha256};
 mod compression;
 #[path = "src/files/folder.rs"]
 mod folder;
+#[path = "src/files/tight_brotli.rs"]
+mod tight_brotli;
 #[path = "src/files/tight_gzip.rs"]
 mod tight_gzip;
 
@@ -22,9 +24,13 @@ fn main() -> io::Result<()> {
     for variable in ["MIMIQUE_WEB_DIST", "CARGO_TARGET_DIR"] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
-    for source in
-        ["build.rs", "src/files/compression.rs", "src/files/folder.rs", "src/files/tight_gzip.rs"]
-    {
+    for source in [
+        "build.rs",
+        "src/files/compression.rs",
+        "src/files/folder.rs",
+        "src/files/tight_brotli.rs",
+        "src/files/tight_gzip.rs",
+    ] {
         println!("cargo::rerun-if-changed={source}");
     }
     let dist = dist();
@@ -40,7 +46,7 @@ fn main() -> io::Result<()> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
             read => read?,
         };
-        let brotli = packed(&out, &bytes, "br", compression::brotli)?;
+        let brotli = packed(&out, &bytes, "br11", brotli)?;
         let gzip = packed(&out, &bytes, "gz", gzip)?;
         let _ = writeln!(
             table,
@@ -50,6 +56,11 @@ fn main() -> io::Result<()> {
     }
     table.push_str("]\n");
     fs::write(out.join("embedded_files.rs"), table)
+}
+
+/// The brotli form, or `None` where it saves less than a twentieth.
+fn brotli(bytes: &[u8]) -> io::Result<Option<Vec<u8>>> {
+    Ok(compression::worth_it(bytes, tight_brotli::brotli(bytes)?))
 }
 
 /// The gzip form, or `None` where it saves less than a twentieth.
