@@ -1,10 +1,11 @@
-//! Brotli and gzip, made ahead: a file is compressed once and served many times.
+//! Brotli and gzip, made ahead: a file is compressed once and served many times. The pages that are embedded are
+//! compressed when the server is built, with more patience (`tight_brotli.rs`, `tight_gzip.rs`).
 //!
 //! Browsers accept brotli only over TLS and from the same machine, gzip everywhere.
 
 use std::io::{self, Write};
 
-/// Past 9, brotli takes ten times as long for a few per cent.
+/// Past 9, brotli takes ten times as long; a server that starts has to wait for it.
 const BROTLI_QUALITY: u32 = 9;
 /// The window, as a power of two: 4 MiB, larger than most files here.
 const BROTLI_WINDOW: u32 = 22;
