@@ -102,6 +102,7 @@ function blendshapes(pack) {
       if (byte < 128) return value;
     }
   };
-  at += varint();
+  const name = varint();
+  at += name;
   return varint();
 }
