@@ -34,7 +34,11 @@ export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimi
   let err = "";
   child.stdout.on("data", (text) => (out += text));
   child.stderr.on("data", (text) => (err += text));
-  const ended = new Promise((done) => child.on("exit", (code, signal) => done({ code, signal })));
+  const ended = new Promise((done) => {
+    child.on("exit", (code, signal) => done({ code, signal }));
+    // A program that is not there never exits.
+    child.on("error", (error) => done({ code: error.message }));
+  });
   const url = `http://127.0.0.1:${port}`;
   const deadline = Date.now() + 120_000;
   for (;;) {
