@@ -54,7 +54,7 @@ for (const [scheme, width, zoom, locale] of [
   ["light", 320, 2, "fr-FR"],
 ]) {
   test(`access: every page, ${scheme}, ${width} px, text ${zoom * 100} %`, { skip: unable, timeout: 300_000 }, async () => {
-    const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
+    const browser = await open("undrawn", { viewport: { width, height: 900 }, colorScheme: scheme, locale });
     const server = await serve([await written(browser.page, study)]);
     const shots = screenshotFolder(`access-${scheme}-${width}-${zoom}`);
     const { page } = browser;
@@ -123,7 +123,7 @@ function alsoIn(language, study) {
 }
 
 test("access: a language written from right to left, 320 px", { skip: unable, timeout: 300_000 }, async () => {
-  const browser = await open("webgl2", { viewport: { width: 320, height: 900 }, locale: "he-IL" });
+  const browser = await open("undrawn", { viewport: { width: 320, height: 900 }, locale: "he-IL" });
   const server = await serve([await written(browser.page, alsoIn("he", study))]);
   const { page } = browser;
   const { look } = looker(page, screenshotFolder("access-rtl"));

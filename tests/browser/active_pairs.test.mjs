@@ -30,7 +30,7 @@ const study = small("active", {
 
 // Somebody goes through the study and always chooses the left clip.
 async function takePart(server, reloads) {
-  const browser = await open("webgl2", { viewport: { width: 1000, height: 800 } });
+  const browser = await open("undrawn", { viewport: { width: 1000, height: 800 } });
   const { page } = browser;
   const asked = [];
   page.on("request", (request) => asked.push(new URL(request.url()).pathname));

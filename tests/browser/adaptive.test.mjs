@@ -66,7 +66,7 @@ for (const [name, asked] of Object.entries(ASKED)) test(`adaptive: levels follow
   const folder = mkdtempSync(join(tmpdir(), "mimique-levels-"));
   writeFileSync(join(folder, "levels.json"), JSON.stringify(study(asked)));
   const server = await serve([join(folder, "levels.json")]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   const fetched = [];
   page.on("request", (request) => fetched.push(new URL(request.url()).pathname));

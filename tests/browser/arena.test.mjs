@@ -11,7 +11,7 @@ import { pathToFileURL } from "node:url";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { answer, go, phase, through } from "./lib/participant.mjs";
+import { answer, go, phase, settled, through } from "./lib/participant.mjs";
 import { mimique, root, serve } from "./lib/server.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -68,14 +68,14 @@ test("arena: a person's votes are pooled by the hashes of what was shown", { ski
   run("arena submit short --method lsts --weights lsts.csv --author A --licence CC0-1.0");
   run("arena study short --out study");
   const server = await serve([join(folder, "study/study.json")]);
-  const browser = await open("webgl2", { viewport: { width: 412, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 412, height: 900 } });
   const { page } = browser;
   const shots = screenshotFolder("arena");
   try {
     const trials = await through(page, `${server.url}/s/short/?backend=webgl2`, async (here, trials) => {
       await go(page, "keyboard");
       await phase(page, "answering", 120_000);
-      await page.waitForTimeout(400);
+      await settled(page);
       if (trials === 1) await page.screenshot({ path: join(shots, "trial.png") });
       await answer(page, "keyboard", here.step);
     }, { questions: true });

@@ -25,7 +25,7 @@ test("attention: hidden pages, the window's focus and the full screen are in the
   const folder = mkdtempSync(join(tmpdir(), "mimique-attention-"));
   writeFileSync(join(folder, "attention.json"), JSON.stringify(study));
   const server = await serve([join(folder, "attention.json")]);
-  const browser = await open("webgl2", { viewport: { width: 900, height: 800 } });
+  const browser = await open("undrawn", { viewport: { width: 900, height: 800 } });
   const { page } = browser;
   const log = async () => {
     const events = await storedEvents(page, server, "attention");

@@ -43,7 +43,7 @@ function blockedProfile() {
 
 test("beginning: all cookies blocked in Chromium, the study goes on and says that nothing is kept", { skip: unable, timeout: 240_000 }, async () => {
   const server = await serve([written()]);
-  const browser = await open("webgl2", { profile: blockedProfile() });
+  const browser = await open("undrawn", { profile: blockedProfile() });
   const { page } = browser;
   try {
     await page.goto(`${server.url}/s/beginning/?backend=webgl2`);
@@ -77,7 +77,7 @@ test("beginning: all cookies blocked in Firefox", { skip: noFirefox, timeout: 24
 
 test("beginning: whatever throws before the first page is told in the participant's language, and taken back when the page comes", { skip: unable, timeout: 240_000 }, async () => {
   const server = await serve([written()]);
-  const browser = await open("webgl2", { locale: "fr-FR" });
+  const browser = await open("undrawn", { locale: "fr-FR" });
   const { page } = browser;
   const address = `${server.url}/s/beginning/?backend=webgl2`;
   try {
@@ -106,7 +106,7 @@ test("beginning: whatever throws before the first page is told in the participan
 
 test("beginning: a page whose script never comes says so", { skip: unable, timeout: 240_000 }, async () => {
   const server = await serve([written()]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   try {
     await page.route("**/app_bg.wasm", () => {});
@@ -121,7 +121,7 @@ test("beginning: a page whose script never comes says so", { skip: unable, timeo
 
 test("beginning: a click after an error on a number field is not lost", { skip: unable, timeout: 240_000 }, async () => {
   const server = await serve([written()]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   try {
     await page.goto(`${server.url}/s/beginning/?backend=webgl2`);
@@ -154,7 +154,7 @@ test("beginning: title and agreement can be read before the page's module is the
   const asked = async (path, languages) => (await fetch(path, { headers: { "accept-language": languages } })).text();
   assert.match(await asked(address, "de, fr-CA;q=0.8, en;q=0.5"), /<html lang="fr">[^]*<main[^>]*>[^]*<h1>/);
   assert.match(await asked(`${address}&lang=en`, "fr"), /<html lang="en">/);
-  const browser = await open("webgl2", { locale: "fr-FR" });
+  const browser = await open("undrawn", { locale: "fr-FR" });
   const { page } = browser;
   try {
     proxy.rule((_, path) => (path.includes("app_bg.wasm") ? "silent" : undefined));

@@ -12,8 +12,9 @@ import { pathToFileURL } from "node:url";
 import { lost, violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { taken } from "./lib/guide_picture.mjs";
-import { answer, go, leave, phase, place, until } from "./lib/participant.mjs";
+import { answer, go, leave, phase, place, settled, until } from "./lib/participant.mjs";
 import { mimique, root } from "./lib/server.mjs";
+import { savedBytes } from "./lib/saved.mjs";
 import { unpack } from "./lib/unpack.mjs";
 
 const unable = skip(!executable && "Chromium not found");
@@ -98,7 +99,7 @@ async function offline(own) {
 async function look(page, name, width, colorScheme) {
   await page.setViewportSize({ width, height: 900 });
   await page.emulateMedia({ colorScheme });
-  await page.waitForTimeout(300);
+  await settled(page);
   await page.screenshot({ path: join(screenshotFolder("capsule"), `${name}-${width}-${colorScheme}.png`), fullPage: true });
   const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
   assert.ok(sideways <= 0, `${name} scrolls sideways by ${sideways} px at ${width} px`);
@@ -152,7 +153,7 @@ function alike(found, expected) {
 /** A text that a link of the page saves. */
 async function saved(page, name) {
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name }).click()]);
-  return readFileSync(await download.path(), "utf8");
+  return String(await savedBytes(download));
 }
 
 test("capsule: from the disk, without a network", { skip: unable, timeout: 600_000 }, async () => {
@@ -186,7 +187,7 @@ test("capsule: from the disk, without a network", { skip: unable, timeout: 600_0
     await until("the late frame is drawn", async () => Number(await page.locator("#stages canvas").getAttribute("data-clip-ms")) === frames[at][1], 5000);
     await page.setViewportSize({ width: 1000, height: 900 });
     await page.locator("#drawn").evaluate((heading) => heading.scrollIntoView({ block: "start" }));
-    await page.waitForTimeout(500);
+    await settled(page);
     await taken(page, "capsule-reader.jpg");
     await look(page, "reader", 1280, "light");
     await look(page, "reader", 360, "dark");

@@ -15,7 +15,7 @@ const unable = skip(executable ? false : "Chromium not found");
 test("changes: the server is killed and comes back with a changed study", { skip: unable, timeout: 300_000 }, async () => {
   let server = await serve(["study-config/demo.json"]);
   const { folder, port } = server;
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   try {
     await page.goto(`${server.url}/s/demo/?backend=webgl2`);
@@ -56,7 +56,7 @@ test("changes: the server is killed and comes back with a changed study", { skip
 
 test("changes: a participant withdraws and nothing is left", { skip: unable, timeout: 300_000 }, async () => {
   const server = await serve(["study-config/demo.json"]);
-  const browser = await open("webgl2", { locale: "fr-FR" });
+  const browser = await open("undrawn", { locale: "fr-FR" });
   const { page } = browser;
   try {
     await page.goto(`${server.url}/s/demo/`);

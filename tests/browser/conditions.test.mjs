@@ -10,6 +10,7 @@ import { test } from "node:test";
 import { executable, open, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { savedBytes } from "./lib/saved.mjs";
 import { mimique, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -66,7 +67,7 @@ const words = (page) => page.locator("main[data-view=failure]").innerText();
 
 /** An address that names what there is not; then one that is right, in the same browser. */
 async function refused(base) {
-  const browser = await open("webgl2", {});
+  const browser = await open("undrawn", {});
   try {
     for (const [language, sentence] of [
       ["en", "The address asks for the condition “Plain”; the study has: hinted, plain. Please write to whoever sent you the link."],
@@ -89,7 +90,7 @@ async function both(base) {
     ["hinted", "plain", "page"],
     ["plain", "hinted", "trial"],
   ]) {
-    const browser = await open("webgl2", {});
+    const browser = await open("undrawn", {});
     const { page } = browser;
     try {
       const address = `${base}?backend=webgl2&condition=`;
@@ -101,7 +102,7 @@ async function both(base) {
       await finish(page);
       if (base.includes("/s/")) continue;
       const [download] = await Promise.all([page.waitForEvent("download"), page.locator("[data-action=download]").click()]);
-      const head = JSON.parse(readFileSync(await download.path(), "utf8").split("\n")[0]);
+      const head = JSON.parse(String(await savedBytes(download)).split("\n")[0]);
       assert.equal(head.started.condition, name);
     } finally {
       await browser.close();
@@ -120,7 +121,7 @@ test("conditions: two links, two conditions, each for good", { skip: unable, tim
     assert.deepEqual([...new Set(ends.map((row) => row.assigned_condition))], ["hinted", "plain"]);
     assert.ok(ends.every((row) => row.trial_type !== "trial" || row.condition === row.assigned_condition));
     // Two are in "plain" (one on the way), one in "hinted": who comes by no condition's link goes there.
-    const browser = await open("webgl2", {});
+    const browser = await open("undrawn", {});
     try {
       assert.equal(await begin(browser.page, `${base}?backend=webgl2`), "page");
     } finally {
@@ -148,7 +149,7 @@ test("conditions: the same on a plain web host", { skip: unable, timeout: 240_00
     await refused(base);
     await both(base);
     // Nobody counts here: without a condition in the address one is drawn, and it stays.
-    const browser = await open("webgl2", {});
+    const browser = await open("undrawn", {});
     try {
       const step = await begin(browser.page, `${base}?backend=webgl2`);
       assert.ok(["page", "trial"].includes(step), step);

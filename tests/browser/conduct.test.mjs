@@ -49,7 +49,7 @@ function exported(server) {
 for (const [scheme, width, hands, locale] of [["light", 1280, "mouse", "en-GB"], ["dark", 320, "keyboard", "fr-FR"]]) {
   test(`conduct: gate, card, practice, clock by ${hands}, ${scheme}, ${width} px`, { skip: unable, timeout: 300_000 }, async () => {
     const server = await host({});
-    const browser = await open("webgl2", { viewport: { width, height: 400 }, colorScheme: scheme, locale });
+    const browser = await open("undrawn", { viewport: { width, height: 400 }, colorScheme: scheme, locale });
     const { page } = browser;
     const { look, seen } = looker(page, screenshotFolder(`conduct-${scheme}-${width}`));
     const press = async (selector) => {
@@ -155,7 +155,7 @@ for (const [scheme, width, hands, locale] of [["light", 1280, "mouse", "en-GB"],
 
 test("conduct: who cannot put the device right, and who is too young, is told why and goes back with a code", { skip: unable, timeout: 120_000 }, async () => {
   const server = await host({ device: { minimumWidth: 4000 } });
-  const browser = await open("webgl2", { viewport: { width: 800, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 800, height: 900 } });
   const { page } = browser;
   const { look } = looker(page, screenshotFolder("conduct-out"));
   try {
@@ -177,7 +177,7 @@ test("conduct: who cannot put the device right, and who is too young, is told wh
   }
 
   const young = await host({ device: undefined });
-  const second = await open("webgl2", {});
+  const second = await open("undrawn", {});
   try {
     await second.page.goto(`${young.url}/s/conduct/?backend=webgl2`);
     await second.page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });

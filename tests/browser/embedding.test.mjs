@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { taken } from "./lib/guide_picture.mjs";
-import { answer, go, leave, place } from "./lib/participant.mjs";
+import { answer, go, leave, place, until } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { small, stimuli, text } from "./lib/small_study.mjs";
 
@@ -90,10 +90,11 @@ test("embedding: a study in a frame of a page that is named, and of no other", {
 
     // A page that is not named sees nothing of the study.
     await page.goto(other.origin);
-    await page.waitForTimeout(2000);
+    const shown = () => page.frames().filter((each) => each !== page.mainFrame());
+    // The browser puts a page of its own in the place of the one that it refuses.
+    await until("the frame is refused", () => shown().length === 1 && shown()[0].url().startsWith("chrome-error:"), 30_000);
     assert.deepEqual(await page.evaluate(() => globalThis.heard), []);
-    const shown = page.frames().filter((each) => each !== page.mainFrame());
-    for (const each of shown) assert.equal(await each.locator("main[data-view]").count().catch(() => 0), 0);
+    for (const each of shown()) assert.equal(await each.locator("main[data-view]").count().catch(() => 0), 0);
   } finally {
     await browser.close();
     await Promise.all([named.close(), other.close(), server.stop()]);

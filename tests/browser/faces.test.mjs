@@ -39,7 +39,7 @@ test("reverse correlation: faces are drawn in the browser, and drawn again by th
   const folder = mkdtempSync(join(tmpdir(), "mimique-faces-"));
   writeFileSync(join(folder, "faces.json"), JSON.stringify(study));
   const server = await serve([join(folder, "faces.json")]);
-  const browser = await open("webgl2", { viewport: { width: 390, height: 844 }, colorScheme: "dark" });
+  const browser = await open("undrawn", { viewport: { width: 390, height: 844 }, colorScheme: "dark" });
   const shots = screenshotFolder("faces");
   const { page } = browser;
   const asked = [];
@@ -56,7 +56,6 @@ test("reverse correlation: faces are drawn in the browser, and drawn again by th
         await go(page, "keyboard");
         await phase(page, "playing");
       }
-      await page.waitForTimeout(900);
       await page.screenshot({ path: join(shots, `trial-${number}.png`) });
       await phase(page, "answering", 60_000);
       if (number === 1) assert.deepEqual(await violations(page), [], "axe");

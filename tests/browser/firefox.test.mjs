@@ -8,12 +8,13 @@ import { screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { firefox, openFirefox } from "./lib/firefox.mjs";
 import { mimique, serve } from "./lib/server.mjs";
+import { withSmallClips } from "./lib/small_study.mjs";
 
 const unable = skip(!firefox && "Firefox not found");
 const here = `(() => { const main = document.querySelector("main[data-view]"); return main && { ...main.dataset }; })()`;
 
 test("firefox: the demo from consent through two trials", { skip: unable, timeout: 300_000 }, async (context) => {
-  const server = await serve(["study-config/demo.json"]);
+  const server = await serve([withSmallClips("study-config/demo.json")]);
   const browser = await openFirefox();
   const shots = screenshotFolder("firefox");
   const until = async (what, holds, ms = 120_000) => {

@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { taken } from "./lib/guide_picture.mjs";
-import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { answer, go, leave, phase, place, settled } from "./lib/participant.mjs";
 import { mimique, root, serve } from "./lib/server.mjs";
 
 const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
@@ -36,7 +36,8 @@ test("guide: the pictures of the first study", { skip: unable, timeout: 600_000 
   try {
     await page.goto(`${server.url}/preview/jaw?backend=webgl2`);
     await page.waitForFunction(() => document.querySelector("canvas")?.width > 0, null, { timeout: 120_000 });
-    await page.waitForTimeout(4000);
+    await page.waitForFunction(() => document.querySelector(".preview-clip")?.textContent.includes("frames"), null, { timeout: 120_000 });
+    await settled(page);
     await taken(page, "first-study-preview.jpg");
     await page.goto(`${server.url}/s/jaw/?backend=webgl2`);
     await page.waitForSelector("main[data-view]", { timeout: 30_000 });
@@ -49,7 +50,7 @@ test("guide: the pictures of the first study", { skip: unable, timeout: 600_000 
     await phase(page, "ready", 120_000);
     await go(page, "mouse");
     await phase(page, "answering", 120_000);
-    await page.waitForTimeout(500);
+    await settled(page);
     await taken(page, "first-study-trial.jpg");
     here = await place(page);
     await answer(page, "mouse", here.step);

@@ -39,7 +39,7 @@ test("jatos: a study is imported, answers go by its API as they come, what it ex
   assert.throws(() => mimique(["export-site", file, "--jatos", "--out", join(folder, "site")], { stdio: "pipe" }), /write --out NAME\.jzip/);
 
   const host = await jatos(imported(readFileSync(archive)), { scripts: process.env.MIMIQUE_JATOS_SCRIPTS, failing: 1 });
-  const browser = await open("webgl2", { viewport: { width: 800, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 800, height: 900 } });
   const { page } = browser;
   page.on("dialog", (dialog) => dialog.accept());
   const clicked = { first: [], left: [] };

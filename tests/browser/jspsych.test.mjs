@@ -26,7 +26,7 @@ before(async () => {
   const exported = exportedClips();
   clips = exported.clips;
   host = await packageHost({ "/site/": exported.folder, ...unpacked }, { "/page": page });
-  browser = await open("webgl2");
+  browser = await open("undrawn");
 });
 after(async () => {
   await browser?.close();
@@ -34,8 +34,8 @@ after(async () => {
 });
 
 /** Starts a timeline of such trials; `timeline(act)` waits for its data while `act` takes part. */
-async function timeline(trials, act = async () => {}, simulation = null) {
-  const { page, errors } = browser;
+async function timeline(trials, act = async () => {}, { simulation = null, by = browser } = {}) {
+  const { page, errors } = by;
   errors.length = 0;
   await page.goto(`${host.url}/page?backend=webgl2`);
   await page.waitForFunction(() => globalThis.jsPsychMimique && globalThis.initJsPsych);
@@ -141,14 +141,14 @@ test("jspsych: simulated people, data alone and on the page", { skip: unable, ti
     { clips: [{ source: clips?.["joy2.box"], clip: "joy2.box", packs: "/site/packs" }], choices: ["yes", "no"] },
     { clips: [BOX, SOFT], keys: ["f", "j"], simulation_options: { data: { response: 1, rt: 9000 } } },
   ];
-  const alone = await timeline(trials, async () => {}, "data-only");
+  const alone = await timeline(trials, async () => {}, { simulation: "data-only" });
   assert.ok(!browser.requests.some((address) => address.includes("joy")));
   const { duration_ms: duration, provenance } = clips["joy2.box"];
   const [first, second] = alone.data;
   assert.ok(first.rt > duration && [0, 1].includes(first.response) && first.response_source === "button", JSON.stringify(first));
   assert.deepEqual([first.clips, first.provenance, first.frames], [["joy2.box"], [provenance], null]);
   assert.deepEqual([second.rt, second.response, second.response_source], [9000, 1, "key"]);
-  const onPage = await timeline([trials[0], { ...trials[1], simulation_options: {} }], async () => {}, "visual");
+  const onPage = await timeline([trials[0], { ...trials[1], simulation_options: {} }], async () => {}, { simulation: "visual" });
   const [button, key] = onPage.data;
   for (const row of [button, key]) assert.ok(row.rt > duration && row.frames.at(-1)[1] === duration && row.failure === null, JSON.stringify({ ...row, frames: row.frames?.length }));
   assert.deepEqual([button.response_source, key.response_source, ["f", "j"][key.response]], ["button", "key", key.response_key]);
@@ -204,15 +204,17 @@ test("jspsych: the package's page and types name every parameter and column", ()
 });
 
 test("jspsych: the picture of the guide", { skip: unable, timeout: 240_000 }, async () => {
-  const { page } = browser;
-  await page.setViewportSize({ width: 780, height: 520 });
+  const drawing = await open("webgl2", { viewport: { width: 780, height: 520 } });
   const pair = { clips: [SOFT, BOX], clip_labels: ["A", "B"], prompt: "<p>Which face moves more?</p>", choices: ["A", "B"], clip_size: 300 };
-  await timeline([pair], async () => {
-    await page.waitForSelector("button:enabled:text-is('B')", { timeout: 90_000 });
-    await page.mouse.move(0, 0);
-    await page.evaluate(() => Promise.all([...document.querySelectorAll("mimique-stage")].map((stage) => stage.seek(stage.duration / 2))));
-    await taken(page, "stage-jspsych.jpg");
-    await button(page, "B").click();
-  });
-  await page.setViewportSize({ width: 1280, height: 900 });
+  try {
+    await timeline([pair], async (page) => {
+      await page.waitForSelector("button:enabled:text-is('B')", { timeout: 90_000 });
+      await page.mouse.move(0, 0);
+      await page.evaluate(() => Promise.all([...document.querySelectorAll("mimique-stage")].map((stage) => stage.seek(stage.duration / 2))));
+      await taken(page, "stage-jspsych.jpg");
+      await button(page, "B").click();
+    }, { by: drawing });
+  } finally {
+    await drawing.close();
+  }
 });

@@ -11,7 +11,7 @@ import { serve } from "./lib/server.mjs";
 const unable = skip(!executable && "Chromium not found");
 
 test("keyboard: every type of question, videos and a comparison", { skip: unable, timeout: 300_000 }, async () => {
-  const browser = await open("webgl2", { viewport: { width: 1000, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 1000, height: 900 } });
   const server = await serve([await written(browser.page, study)]);
   const { page } = browser;
   const press = async (...keys) => {

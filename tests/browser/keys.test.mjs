@@ -34,7 +34,7 @@ test("keys: pressed while the clip plays, by key and by mouse, and after it", { 
   const folder = mkdtempSync(join(tmpdir(), "mimique-keys-"));
   writeFileSync(join(folder, "speeded.json"), JSON.stringify(study));
   const server = await serve([join(folder, "speeded.json")]);
-  const browser = await open("webgl2", { viewport: { width: 390, height: 844 } });
+  const browser = await open("undrawn", { viewport: { width: 390, height: 844 } });
   const shots = screenshotFolder("keys");
   const { page } = browser;
   const pressed = (value) => page.locator(`button[data-action=press][value=${value}]`).getAttribute("aria-pressed");
@@ -112,7 +112,7 @@ test("keys: a line moved while the clip plays, 60 values a second", { skip: unab
   const folder = mkdtempSync(join(tmpdir(), "mimique-line-"));
   writeFileSync(join(folder, "followed.json"), JSON.stringify(line));
   const server = await serve([join(folder, "followed.json")]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 800 } });
+  const browser = await open("undrawn", { viewport: { width: 1280, height: 800 } });
   const shots = screenshotFolder("keys");
   const { page } = browser;
   try {

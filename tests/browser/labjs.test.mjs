@@ -22,7 +22,7 @@ window.rows = study.options.datastore.data;</script></body></html>`;
 test("lab.js: the guide's recipe keeps response, time and frames of each clip", { skip: unable, timeout: 240_000 }, async () => {
   const { folder, clips } = exportedClips();
   const host = await packageHost({ "/site/": folder, ...unpacked }, { "/": page });
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   try {
     const { page } = browser;
     await page.addInitScript(() => {

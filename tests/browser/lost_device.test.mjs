@@ -10,7 +10,7 @@ import { executable, open, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { go, phase } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
-import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+import { SMALL_LOOK, small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 
@@ -18,7 +18,7 @@ const study = small("lost", {
   questions: [{ id: "rating", type: "likert", prompt: text("How strong?"), numItems: 7, leftLabel: text("weak"), rightLabel: text("strong") }],
   components: { faces: trials(["joy2.box"], ["rating"]) },
   sequence: { order: "fixed", components: ["faces"] },
-  stimuli: stimuli({ head: { builtin: { seed: 1, vertices: 2000 } } }, { box: { method: "box" } }, [["head", "box"]]),
+  stimuli: { ...stimuli({ head: { builtin: { seed: 1, vertices: 2000 } } }, { box: { method: "box" } }, [["head", "box"]]), look: SMALL_LOOK },
 });
 
 /** As a driver that crashes: the context goes, and comes back a moment later. */

@@ -145,7 +145,7 @@ const rowsOf = (server) => parse(mimique(["export", "--database", server.databas
 test("mimicry: numbers on the clock of the clip, gaps, a reload, the button that switches off; no picture leaves", { skip: unable, timeout: 300_000 }, async () => {
   const study = written();
   const server = await serve([study]);
-  const browser = await open("webgl2", camera);
+  const browser = await open("undrawn", camera);
   const { page, context, errors } = browser;
   const sent = watchRequests(context);
   const { look } = looker(page, screenshotFolder("mimicry"));
@@ -236,7 +236,7 @@ test("mimicry: who declines is asked for no camera and loads nothing; who may no
   const server = await serve([written({ more: { needsFace: true } })]);
   try {
     for (const [locale, permissions, consented, found] of [["en-GB", ["camera"], "declined", "off"], ["fr-FR", [], "agreed", "refused"]]) {
-      const browser = await open("webgl2", { ...camera, locale, permissions, viewport: { width: 390, height: 844 }, colorScheme: "dark" });
+      const browser = await open("undrawn", { ...camera, locale, permissions, viewport: { width: 390, height: 844 }, colorScheme: "dark" });
       const { page, context } = browser;
       const sent = watchRequests(context);
       const { look } = looker(page, screenshotFolder("mimicry"));
@@ -277,7 +277,7 @@ test("mimicry: who declines is asked for no camera and loads nothing; who may no
 
 test("mimicry: MediaPipe's own scripts and module run under the page's policy; a file that is no model is told", { skip: unable, timeout: 300_000 }, async () => {
   const server = await serve([written({ runtime: mediapipe })]);
-  const browser = await open("webgl2", camera);
+  const browser = await open("undrawn", camera);
   const { page, context, errors } = browser;
   const sent = watchRequests(context);
   const said = [];

@@ -30,7 +30,7 @@ function moving(page) {
 
 for (const reducedMotion of ["reduce", "no-preference"]) {
   test(`motion: ${reducedMotion}`, { skip: unable, timeout: 300_000 }, async () => {
-    const browser = await open("webgl2", { reducedMotion });
+    const browser = await open("undrawn", { reducedMotion });
     const server = await serve([await written(browser.page, study)]);
     const { page } = browser;
     const seen = {};

@@ -15,7 +15,7 @@ const age = "fieldset[data-question=age] input";
 async function network() {
   const server = await serve(["study-config/demo.json"]);
   const proxy = await badProxy(server.url);
-  const browser = await open("webgl2", { viewport: { width: 600, height: 700 } });
+  const browser = await open("undrawn", { viewport: { width: 600, height: 700 } });
   const { page } = browser;
   const close = async () => {
     await browser.close();

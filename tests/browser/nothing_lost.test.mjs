@@ -36,7 +36,7 @@ test(`nothing lost: ${sessions} sessions over a bad network`, { skip: unable, ti
   try {
     for (let session = 1; session <= sessions; session++) {
       const proxy = await badProxy(server.url, session * 2654435761);
-      const browser = await open("webgl2", { viewport: { width: 480, height: 480 } });
+      const browser = await open("undrawn", { viewport: { width: 480, height: 480 } });
       let { page } = browser;
       const address = `${proxy.url}/s/storm/?backend=webgl2`;
       const given = new Map();

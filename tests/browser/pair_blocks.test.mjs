@@ -36,7 +36,7 @@ test("pair blocks: each two methods in turn, left and right, in the export", { s
   const folder = mkdtempSync(join(tmpdir(), "mimique-duels-"));
   writeFileSync(join(folder, "duels.json"), JSON.stringify(study));
   const server = await serve([join(folder, "duels.json")]);
-  const browser = await open("webgl2", { viewport: { width: 412, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 412, height: 900 } });
   const shots = screenshotFolder("pair-blocks");
   const { page } = browser;
   try {
@@ -57,10 +57,7 @@ test("pair blocks: each two methods in turn, left and right, in the export", { s
       });
       await go(page, "keyboard");
       await phase(page, "playing");
-      if (trials === 1) {
-        await page.waitForTimeout(1500);
-        await page.screenshot({ path: join(shots, "first.png") });
-      }
+      if (trials === 1) await page.screenshot({ path: join(shots, "first.png") });
       await phase(page, "answering", 120_000);
       assert.deepEqual(await waiting(page), [false, false], "both stand there after it");
       const turns = (await page.evaluate(() => window.turns)).map(String);

@@ -10,7 +10,7 @@ import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
-import { small, stimuli, text, trials } from "./lib/small_study.mjs";
+import { SMALL_LOOK, small, stimuli, text, trials } from "./lib/small_study.mjs";
 
 const unable = skip(!executable && "Chromium not found");
 
@@ -26,15 +26,18 @@ const study = (video) => small("pairs", {
     turns: { type: "pairs", compare: "avatar", levels: ["actor", "person"], within: ["segment"], show: "inTurn", question: "nearer" },
   },
   sequence: { order: "fixed", components: ["heads", "videos", "turns"] },
-  stimuli: stimuli(
-    {
-      head: { builtin: { seed: 1 } },
-      actor: { builtin: { actor: 7 }, look: "reference" },
-      person: { videos: { joy2: video } },
-    },
-    { box: { method: "box" }, real: { method: "recorded" } },
-    [["head", "box"], ["actor", "real"], ["person", "real"]],
-  ),
+  stimuli: {
+    ...stimuli(
+      {
+        head: { builtin: { seed: 1 } },
+        actor: { builtin: { actor: 7 }, look: "reference" },
+        person: { videos: { joy2: video } },
+      },
+      { box: { method: "box" }, real: { method: "recorded" } },
+      [["head", "box"], ["actor", "real"], ["person", "real"]],
+    ),
+    look: SMALL_LOOK,
+  },
 });
 
 for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {

@@ -33,7 +33,7 @@ for (const show of ["inStep", "inTurn"]) {
     const folder = mkdtempSync(join(tmpdir(), "mimique-panel-"));
     writeFileSync(join(folder, "quality.json"), JSON.stringify(study("quality", show)));
     const server = await serve([join(folder, "quality.json")]);
-    const browser = await open("webgl2", { viewport: SIZES[show], colorScheme: show === "inTurn" ? "dark" : "light", locale: show === "inTurn" ? "fr-FR" : "en-GB" });
+    const browser = await open("undrawn", { viewport: SIZES[show], colorScheme: show === "inTurn" ? "dark" : "light", locale: show === "inTurn" ? "fr-FR" : "en-GB" });
     const shots = screenshotFolder("panels");
     const { page } = browser;
     try {
@@ -51,7 +51,6 @@ for (const show of ["inStep", "inTurn"]) {
       });
       await go(page, "keyboard");
       await phase(page, "playing");
-      await page.waitForTimeout(2000);
       await page.screenshot({ path: join(shots, `${show}-playing.png`) });
       await phase(page, "answering", 120_000);
       const turns = await page.evaluate(() => [...new Set(window.turns)]);
@@ -70,7 +69,6 @@ for (const show of ["inStep", "inTurn"]) {
       await tabTo(page, ".panel-row:nth-of-type(3) button");
       await page.keyboard.press("Enter");
       await phase(page, "playing");
-      await page.waitForTimeout(500);
       assert.ok(await page.locator("input[type=range]").first().isDisabled(), "nothing is rated while a clip plays");
       await phase(page, "answering", 60_000);
       assert.equal(await second.getAttribute("aria-disabled"), "true");

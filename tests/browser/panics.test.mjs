@@ -14,7 +14,7 @@ const module = join(root, "target/web-modules/panicking");
 test("panic: a solver's panic is in the server's log, without values", { skip: unable, timeout: 120_000 }, async () => {
   assert.ok(existsSync(join(module, "panicking.js")), `${module} is not there; run cargo xtask web`);
   const server = await serve([join(root, "study-config/demo.json")]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   try {
     const { page } = browser;
     const instead = (name, contentType) => ({ contentType, body: readFileSync(join(module, name)) });

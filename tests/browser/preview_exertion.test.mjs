@@ -45,7 +45,7 @@ function study(folder) {
 test("preview: the body of an exertion beside its face", { skip: noBrowser, timeout: 600_000 }, async () => {
   const file = study(mkdtempSync(join(tmpdir(), "mimique-preview-")));
   const server = await serve([file]);
-  const browser = await open("webgl2", { viewport: { width: 1440, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 1440, height: 900 } });
   const { page } = browser;
   try {
     const address = `${server.url}/preview/exertions?backend=webgl2`;
@@ -89,7 +89,6 @@ test("preview: the body of an exertion beside its face", { skip: noBrowser, time
     await page.emulateMedia({ colorScheme: "dark" });
     await page.selectOption("#clip-a", "run.recorded");
     await page.waitForFunction(() => !document.querySelector("#exertion").hidden, null, { timeout: 60_000 });
-    await page.waitForTimeout(300);
     await look("run-phone-dark");
     // What participants load has nothing of it.
     const bundle = await (await fetch(`${server.url}/api/studies/exertions`)).text();

@@ -10,7 +10,7 @@ import { test } from "node:test";
 import { looker } from "./lib/access.mjs";
 import { badProxy } from "./lib/bad_proxy.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
-import { go, leave, phase, place } from "./lib/participant.mjs";
+import { go, leave, phase, place, steady } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { heard } from "./lib/snapshot.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
@@ -37,7 +37,7 @@ for (const [scheme, width, locale, forcedColors] of [
     writeFileSync(join(folder, "rare.json"), JSON.stringify(study));
     const server = await serve([join(folder, "rare.json")]);
     const proxy = await badProxy(server.url);
-    const browser = await open("webgl2", { viewport: { width, height: 900 }, colorScheme: scheme, locale, forcedColors });
+    const browser = await open("undrawn", { viewport: { width, height: 900 }, colorScheme: scheme, locale, forcedColors });
     const { page, context } = browser;
     const shots = screenshotFolder(`rare-${colours.replace(" ", "-")}-${width}`);
     const seen = [];
@@ -93,7 +93,8 @@ for (const [scheme, width, locale, forcedColors] of [
 
       await at("trial");
       await phase(page, "failed", 60_000);
-      for (let before = 0; before < proxy.counts.damaged; await page.waitForTimeout(6_000)) before = proxy.counts.damaged;
+      // The longest pause between two tries is 4 s.
+      await steady(() => proxy.counts.damaged, 5_000);
       await look("trial-failed");
       rule(take, "silent");
       await page.locator("[data-action=retry]").click();

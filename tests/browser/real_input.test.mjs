@@ -9,8 +9,9 @@ import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, root, serve } from "./lib/server.mjs";
+import { withSmallClips } from "./lib/small_study.mjs";
 
-const study = "study-config/animface.json";
+const study = withSmallClips("study-config/animface.json");
 const data = process.env.MIMIQUE_DATA ?? join(root, "../shared/data");
 const head = join(data, "ict-facekit/ict-facekit.glb");
 const unable = skip(!executable ? "Chromium not found" : !existsSync(head) && `real data not found: ${head}`);

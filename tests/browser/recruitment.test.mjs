@@ -49,7 +49,7 @@ const people = {
 
 /** Takes part in a browser of one's own; what stands on the last page. */
 async function takePart(address, { age, colour, slow }) {
-  const browser = await open("webgl2", { viewport: { width: 900, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 900, height: 900 } });
   const { page } = browser;
   const end = () =>
     page.evaluate(() => {

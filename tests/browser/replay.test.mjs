@@ -76,7 +76,7 @@ test("replay: what somebody saw is drawn again, a late frame late", { skip: unab
   const folder = mkdtempSync(join(tmpdir(), "mimique-replay-"));
   writeFileSync(join(folder, "seen.json"), JSON.stringify(study));
   const server = await serve([join(folder, "seen.json")]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 1280, height: 900 } });
   const { page } = browser;
   const shots = screenshotFolder("replay");
   const look = async (name, width, colorScheme) => {

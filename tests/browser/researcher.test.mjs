@@ -3,13 +3,14 @@
 // page for everybody (axe, 360 px, dark, French).
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { violations } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
+import { savedBytes } from "./lib/saved.mjs";
 import { root, serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -68,7 +69,7 @@ test("researcher: account, live dashboard, exclusion, export, upload", { skip: u
   const broken = { ...study("broken"), languges: ["en"] };
   writeFileSync(join(folder, "broken.json"), JSON.stringify(broken));
   const server = await serve([join(folder, "moods.json")]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 }, timezone: ZONE });
+  const browser = await open("undrawn", { viewport: { width: 1280, height: 900 }, timezone: ZONE });
   const { page } = browser;
   const shots = screenshotFolder("researcher");
   let count = 0;
@@ -166,7 +167,7 @@ test("researcher: account, live dashboard, exclusion, export, upload", { skip: u
     // Exports are one click each; the one excluded is in them, marked.
     const saved = async (name) => {
       const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name, exact: true }).click()]);
-      return readFileSync(await download.path(), "utf8");
+      return String(await savedBytes(download));
     };
     const rows = parse(await saved("Tidy CSV"));
     const second = rows.filter((row) => row.participant_id === "p0002");
@@ -257,7 +258,7 @@ async function answersToDemo(server, number) {
 
 test("report: a point that stands for a clip leads to that clip in the preview", { skip: unable, timeout: 300_000 }, async () => {
   const server = await serve([join(root, "study-config/demo.json")]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 1280, height: 900 } });
   const { page } = browser;
   try {
     for (const number of [1, 2, 3, 4, 5, 6]) await answersToDemo(server, number);

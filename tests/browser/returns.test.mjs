@@ -22,7 +22,7 @@ const age = "fieldset[data-question=age] input";
 
 test("returns: back button, closed lid and second tab lose nothing", { skip: unable, timeout: 180_000 }, async () => {
   const server = await serve(["study-config/demo.json"]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page, context } = browser;
   try {
     const here = await begun(server, browser);
@@ -40,7 +40,7 @@ test("returns: back button, closed lid and second tab lose nothing", { skip: una
     // The lid: the page stands still, and goes on.
     const cdp = await context.newCDPSession(page);
     await cdp.send("Page.setWebLifecycleState", { state: "frozen" });
-    await new Promise((done) => setTimeout(done, 3_000));
+    await new Promise((done) => setTimeout(done, 1_000));
     await cdp.send("Page.setWebLifecycleState", { state: "active" });
     assert.equal(await page.locator(age).inputValue(), "41");
 
@@ -53,7 +53,7 @@ test("returns: back button, closed lid and second tab lose nothing", { skip: una
     // The browser takes a moment to give back what a closed tab held: a person presses again.
     for (let tries = 0; tries < 10 && (await place(second)).view !== "questions"; tries++) {
       if ((await place(second)).view === "failure") await second.locator("button.primary").click();
-      await second.waitForTimeout(1_500);
+      await second.waitForSelector("main[data-view=questions]", { timeout: 1_500 }).catch(() => {});
     }
     await second.waitForSelector("main[data-view=questions]", { timeout: 30_000 });
     assert.equal(await second.locator(age).inputValue(), "41");

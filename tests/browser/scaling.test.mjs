@@ -30,7 +30,7 @@ test("scaling: three levels in step, and which two differ more", { skip: unable,
   const folder = mkdtempSync(join(tmpdir(), "mimique-scale-"));
   writeFileSync(join(folder, "scale.json"), JSON.stringify(study));
   const server = await serve([join(folder, "scale.json")]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 800 }, locale: "fr-FR" });
+  const browser = await open("undrawn", { viewport: { width: 1280, height: 800 }, locale: "fr-FR" });
   const shots = screenshotFolder("scaling");
   const { page } = browser;
   try {
@@ -39,7 +39,6 @@ test("scaling: three levels in step, and which two differ more", { skip: unable,
       assert.deepEqual(captions, ["A", "B", "C"]);
       await go(page, "keyboard");
       await phase(page, "playing");
-      await page.waitForTimeout(1500);
       await page.screenshot({ path: join(shots, `trial-${number}.png`) });
       await phase(page, "answering", 120_000);
       assert.equal(await page.locator(".panel-row, .play-alone").count(), 0, "nothing is rated one by one");

@@ -59,7 +59,7 @@ test("site: a study on a plain web host, downloaded, posted and imported", { ski
   writeFileSync(file, JSON.stringify(study));
   const pages = process.env.MIMIQUE_WEB_DIR ? ["--web-dir", process.env.MIMIQUE_WEB_DIR] : [];
   mimique(["export-site", file, "--out", site, "--packs", join(folder, "packs"), ...pages]);
-  const browser = await open("webgl2", { viewport: { width: 800, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 800, height: 900 } });
   const { page } = browser;
   const { look } = looker(page, screenshotFolder("site"));
   const given = [];
@@ -116,7 +116,7 @@ test("site: a study on a plain web host, downloaded, posted and imported", { ski
       return true;
     });
     // Who is screened out has no code here, and so no way back as one who has finished.
-    const second = await open("webgl2", {});
+    const second = await open("undrawn", {});
     try {
       await second.page.goto(`${base}/study/?backend=webgl2&PROLIFIC_PID=c`);
       await second.page.waitForSelector("main[data-view=consent]", { timeout: 30_000 });

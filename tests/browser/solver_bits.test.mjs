@@ -40,7 +40,7 @@ function studyOfEveryMethod() {
 
 test("solver: every method has the same bits natively and in Chromium", { skip: unable, timeout: 600_000 }, async () => {
   const server = await serve([studyOfEveryMethod()]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   try {
     const { page } = browser;
     await page.goto(`${server.url}/preview/methods`);

@@ -131,8 +131,8 @@ test("sound: checked by keyboard, heard with the first frame, late and mismatche
   assert.match(said, /sound joy\.wav: WAV, 2\.500 s, 8000 Hz, 1 channel/);
   const server = await serve([file]);
   const address = `${server.url}/s/sound/?backend=webgl2`;
-  const english = await open("webgl2");
-  const french = await open("webgl2", { locale: "fr-FR", viewport: { width: 390, height: 780 }, colorScheme: "dark" });
+  const english = await open("undrawn");
+  const french = await open("undrawn", { locale: "fr-FR", viewport: { width: 390, height: 780 }, colorScheme: "dark" });
   try {
     const { page } = english;
     const folder = screenshotFolder("sound");
@@ -231,7 +231,7 @@ test("sound: who cannot hear says so, and goes on or not as the study rules", { 
   const file = written();
   writeFileSync(file.replace("sound.json", "strict.json"), JSON.stringify(strict));
   const server = await serve([file, file.replace("sound.json", "strict.json")]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   try {
     for (const [id, view] of [["sound", "trial"], ["strict", "end"]]) {

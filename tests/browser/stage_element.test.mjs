@@ -10,6 +10,7 @@ import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { taken } from "./lib/guide_picture.mjs";
 import { exportedClips } from "./lib/exported_clips.mjs";
 import { packageHost, unpacked } from "./lib/package_host.mjs";
+import { settled } from "./lib/participant.mjs";
 import { mimique } from "./lib/server.mjs";
 
 const unable = skip(executable ? false : "Chromium not found");
@@ -280,10 +281,10 @@ test("element: the example of the package is solved and played without a build s
   assert.match(await page.locator("#log").textContent(), /"aborted": null/);
   await page.evaluate(() => (document.getElementById("time").value = 500, document.getElementById("time").dispatchEvent(new Event("input"))));
   await page.waitForFunction(() => [...document.querySelectorAll("mimique-stage")].every((stage) => stage.time === stage.duration / 2));
-  await page.waitForTimeout(1000);
+  await settled(page);
   await taken(page, "stage-element.jpg");
   await page.setViewportSize({ width: 390, height: 800 });
-  await page.waitForTimeout(500);
+  await settled(page);
   await page.screenshot({ path: join(screenshotFolder("stage_element"), "example-narrow.png"), fullPage: true });
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), true);
   await page.setViewportSize({ width: 1280, height: 900 });

@@ -56,7 +56,7 @@ const inked = (page, selector) =>
 test("studio: a run whose heart and mouth follow training, its window, its files", { skip: noBrowser, timeout: 600_000 }, async () => {
   const folder = sample();
   const server = await preview([]);
-  const browser = await open("webgl2", { viewport: { width: 1440, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 1440, height: 900 } });
   const { page } = browser;
   try {
     await page.goto(`${server.url}?backend=webgl2`);
@@ -150,7 +150,7 @@ test("studio: a run whose heart and mouth follow training, its window, its files
 test("studio: exertion of files, and a motion without joints", { skip: noBrowser, timeout: 600_000 }, async () => {
   const folder = sample();
   const server = await preview([]);
-  const browser = await open("webgl2", {});
+  const browser = await open("undrawn", {});
   const { page } = browser;
   try {
     await page.goto(`${server.url}?backend=webgl2`);
@@ -191,7 +191,7 @@ test("studio: exertion of files, and a motion without joints", { skip: noBrowser
 
 test("studio: exertion on a phone, in the dark, by keyboard", { skip: noBrowser, timeout: 600_000 }, async () => {
   const server = await preview([]);
-  const browser = await open("webgl2", { viewport: { width: 360, height: 780 }, colorScheme: "dark" });
+  const browser = await open("undrawn", { viewport: { width: 360, height: 780 }, colorScheme: "dark" });
   const { page } = browser;
   try {
     await page.goto(`${server.url}?backend=webgl2`);

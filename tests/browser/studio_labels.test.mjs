@@ -30,7 +30,7 @@ const BY_HAND = "label,first_frame,last_frame\nrest,5,44\njoy1,55,94\nanger1,105
 
 test("studio: labels are learnt, suggested, confirmed, relabelled, moved and carried out", { skip: noBrowser, timeout: 600_000 }, async () => {
   const server = await preview([]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   const boxes = () =>
     page.locator("#label-line .segment").evaluateAll((all) => all.map((box) => ({ label: box.textContent, state: box.dataset.state, title: box.title, left: box.style.insetInlineStart, width: box.style.width })));

@@ -32,7 +32,7 @@ const typed = async (page, name, value) => page.locator(PANEL).getByLabel(name, 
 
 test("studio: blendshapes locked and bounded, markers weighed; `mimique solve` takes the settings", { skip: noData, timeout: 600_000 }, async () => {
   const server = await preview([head, "--mocap", take, "--markers", map]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   const shots = screenshotFolder("studio");
   const folder = mkdtempSync(join(tmpdir(), "mimique-studio-"));
@@ -178,7 +178,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
   const file = (name) => join(folder, name);
   const files = ["--avatar", head, "--mocap", take, "--markers", map];
   const server = await preview([head, "--mocap", take, "--markers", map]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   try {
     // The known weights of a take: those of another method.
@@ -225,7 +225,7 @@ test("studio: regression is offered once there is a take to learn from, and lear
 
 test("studio: an avatar's own locked shapes; the tables wide, narrow, light and dark", { skip: noBrowser, timeout: 600_000 }, async () => {
   const server = await preview([]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   const shots = screenshotFolder("studio");
   try {

@@ -17,7 +17,7 @@ test("studio: a compression that only native builds read is named, and the head 
   const file = join(mkdtempSync(join(tmpdir(), "mimique-refused-")), "packed.glb");
   writeFileSync(file, glb);
   const server = await preview([]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   try {
     const { page } = browser;
     await page.goto(`${server.url}?backend=webgl2`);

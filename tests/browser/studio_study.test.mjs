@@ -14,7 +14,7 @@ const noBrowser = skip(!executable && "Chromium not found");
 
 test("studio: saved as a study, previewed, checked and served", { skip: noBrowser }, async () => {
   const shown = await preview([]);
-  const browser = await open("webgl2", { viewport: { width: 1440, height: 900 } });
+  const browser = await open("undrawn", { viewport: { width: 1440, height: 900 } });
   const { page, context, errors } = browser;
   const shots = screenshotFolder("studio-study");
   try {

@@ -25,7 +25,7 @@ const way = ([x, y], [right, down], steps = 8) => Array.from({ length: steps + 1
 
 test("studio: a face is turned, zoomed and moved by fingers, and time by one", { skip: noBrowser, timeout: 300_000 }, async () => {
   const server = await preview([]);
-  const browser = await open("webgl2", { viewport: { width: 820, height: 1180 }, touch: true });
+  const browser = await open("undrawn", { viewport: { width: 820, height: 1180 }, touch: true });
   const { page } = browser;
   const shots = screenshotFolder("studio");
   const view = () => page.evaluate(() => JSON.parse(localStorage.getItem("mimique-studio") ?? "{}").camera ?? { yaw: 0, pitch: 0, zoom: 1, x: 0, y: 0 });

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
+import { savedBytes } from "./lib/saved.mjs";
 import { preview } from "./lib/server.mjs";
 import { choose, fact, unfold, violations, weightsHash } from "./lib/studio.mjs";
 
@@ -272,7 +273,7 @@ test("studio workbench: how far methods are apart; sensitivity; a video of a cho
     await page.fill("#export-rate", "24");
     await page.locator("#export-mp4").waitFor();
     const [file] = await Promise.all([page.waitForEvent("download", { timeout: 300_000 }), page.click("#export-mp4")]);
-    const bytes = await import("node:fs").then(async ({ readFileSync }) => readFileSync(await file.path()));
+    const bytes = await savedBytes(file);
     assert.equal(bytes.subarray(4, 8).toString(), "ftyp");
     const other = await context.newPage();
     const seen = await other.evaluate(async (text) => {
@@ -304,7 +305,7 @@ test("studio workbench: how far methods are apart; sensitivity; a video of a cho
 
 test("studio workbench: in French, on a tablet, in the dark", { skip: noBrowser, timeout: 600_000 }, async () => {
   const server = await preview([]);
-  const browser = await open("webgl2", { viewport: { width: 768, height: 1024 }, colorScheme: "dark", locale: "fr-FR" });
+  const browser = await open("undrawn", { viewport: { width: 768, height: 1024 }, colorScheme: "dark", locale: "fr-FR" });
   const { page } = browser;
   try {
     await start(page, server);

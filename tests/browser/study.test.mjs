@@ -10,8 +10,9 @@ import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
 import { answer, clipOf, go, leave, phase, place } from "./lib/participant.mjs";
 import { mimique, serve } from "./lib/server.mjs";
+import { withSmallClips } from "./lib/small_study.mjs";
 
-const study = "study-config/demo.json";
+const study = withSmallClips("study-config/demo.json");
 const unable = skip(executable ? false : "Chromium not found");
 
 const people = [

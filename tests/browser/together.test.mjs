@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { looker } from "./lib/access.mjs";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
-import { answer, go, leave, phase, place, storedEvents, tabTo, until } from "./lib/participant.mjs";
+import { answer, go, leave, phase, place, settled, storedEvents, tabTo, until } from "./lib/participant.mjs";
 import { serve } from "./lib/server.mjs";
 import { small, stimuli, text, trials } from "./lib/small_study.mjs";
 
@@ -81,14 +81,14 @@ async function host() {
 test("together: twelve screens, one clip and two", { skip: unable, timeout: 600_000 }, async () => {
   const server = await host();
   const shots = screenshotFolder("together");
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 900 }, locale: "fr-FR", colorScheme: "dark" });
+  const browser = await open("undrawn", { viewport: { width: 1280, height: 900 }, locale: "fr-FR", colorScheme: "dark" });
   const { page } = browser;
   // Every screen is looked at in one phase; a person who turns a phone sees the same.
   const everywhere = async (name, check) => {
     for (const [width, height] of screens) {
       await page.setViewportSize({ width, height });
       await page.evaluate((selector) => document.querySelector(selector).scrollIntoView({ block: "nearest" }), name === "answering" && width < 960 ? ".answers > form" : ".stage-frame");
-      await page.waitForTimeout(100);
+      await settled(page);
       const found = await seen(page);
       await page.screenshot({ path: join(shots, `${name}-${width}x${height}.png`) });
       const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
@@ -143,7 +143,7 @@ test("together: twelve screens, one clip and two", { skip: unable, timeout: 600_
 
 test("together: the page goes to the stage, then to the questions, by keyboard on a phone; axe at 200 % and 400 %", { skip: unable, timeout: 400_000 }, async () => {
   const server = await host();
-  const browser = await open("webgl2", { viewport: { width: 390, height: 700 } });
+  const browser = await open("undrawn", { viewport: { width: 390, height: 700 } });
   const { page } = browser;
   try {
     await begin(browser, server);
@@ -167,7 +167,7 @@ test("together: the page goes to the stage, then to the questions, by keyboard o
 
 test("together: a play that was not wholly in view does not count", { skip: unable, timeout: 240_000 }, async () => {
   const server = await host();
-  const browser = await open("webgl2", { viewport: { width: 390, height: 600 } });
+  const browser = await open("undrawn", { viewport: { width: 390, height: 600 } });
   const { page } = browser;
   try {
     await begin(browser, server);

@@ -72,7 +72,7 @@ test("triggers: onset, frames, end and answers, by the page's clock; without the
   let lab = await laboratory(0);
   writeFileSync(join(folder, "triggers.json"), JSON.stringify(study(lab.port)));
   const server = await serve([join(folder, "triggers.json")]);
-  const browser = await open("webgl2");
+  const browser = await open("undrawn");
   const { page } = browser;
   try {
     await page.goto(`${server.url}/s/triggers/?backend=webgl2`);

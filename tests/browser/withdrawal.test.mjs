@@ -23,7 +23,7 @@ test("withdrawal: the last page's code deletes the answers, in French", { skip: 
   const folder = mkdtempSync(join(tmpdir(), "mimique-withdrawal-"));
   writeFileSync(join(folder, "leaving.json"), JSON.stringify(study));
   const server = await serve([join(folder, "leaving.json")]);
-  const browser = await open("webgl2", { locale: "fr-FR" });
+  const browser = await open("undrawn", { locale: "fr-FR" });
   const { page } = browser;
   try {
     await page.goto(`${server.url}/s/leaving/?backend=webgl2`);

@@ -198,16 +198,17 @@ fn browser(tally: &mut Tally) -> Result<()> {
         TIMED.contains(&name.trim_end_matches(".test.mjs"))
     };
     let (timed, others): (Vec<_>, Vec<_>) = files.into_iter().partition(is_timed);
-    let mut run = |name: &str, beside: u32, files: Vec<PathBuf>| {
+    // `run.mjs` is `node --test` with browsers and prepared stimuli that all files share.
+    let mut run = |name: &str, workers: u32, files: Vec<PathBuf>| {
         let mut tests = Command::new("node");
-        tests.args(["--test", &format!("--test-concurrency={beside}"), "--test-reporter=tap"]);
+        tests.args(["run.mjs", &format!("--test-concurrency={workers}"), "--test-reporter=tap"]);
         tests.args(files).current_dir(&folder);
         tests.env("MIMIQUE_DATA", data()).env("MIMIQUE_BINARY", &binary);
         tally.tests(name, &mut tests)
     };
-    // A page mostly waits for clips to be played: two of them share the cores well.
-    run("browser tests, two beside each other", 2, others)?;
-    run("browser tests of what is timed, one after the other", 1, timed)
+    // Most pages draw nothing and wait for clips to be played: three share two cores well.
+    run("browser tests, three at a time", 3, others)?;
+    run("browser tests of what is timed, one at a time", 1, timed)
 }
 
 fn need(package: &Package) {

@@ -113,9 +113,28 @@ export async function clipOf(page, server, study, number) {
   return (await trials())[number - 1];
 }
 
+/** Waits until nothing moves on the page: no transition runs, and it stays scrolled where it is for some frames. */
+export function settled(page) {
+  return page.evaluate(async () => {
+    for (let place; place !== `${scrollX} ${scrollY}`; ) {
+      place = `${scrollX} ${scrollY}`;
+      const changing = document.getAnimations().filter((animation) => animation instanceof CSSTransition);
+      await Promise.allSettled(changing.map((animation) => animation.finished));
+      for (let frames = 0; frames < 6; frames++) await new Promise(requestAnimationFrame);
+    }
+  });
+}
+
+/** Waits until a count has stayed the same for so long. */
+export async function steady(count, ms) {
+  for (let [before, since] = [count(), Date.now()]; Date.now() - since < ms; await new Promise((done) => setTimeout(done, 100))) {
+    if (count() !== before) [before, since] = [count(), Date.now()];
+  }
+}
+
 /** Waits until it holds. */
 export async function until(what, holds, ms = 90_000) {
-  for (const deadline = Date.now() + ms; !(await holds()); await new Promise((done) => setTimeout(done, 250))) {
+  for (const deadline = Date.now() + ms; !(await holds()); await new Promise((done) => setTimeout(done, 100))) {
     assert.ok(Date.now() < deadline, `${what}: not within ${ms / 1000} s`);
   }
 }

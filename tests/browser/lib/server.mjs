@@ -1,7 +1,7 @@
 // Starts `mimique serve` and `mimique preview` on the loopback interface, the server with its data in a new folder.
 
 import { spawn, execFileSync } from "node:child_process";
-import { mkdtempSync } from "node:fs";
+import { existsSync, mkdtempSync, symlinkSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
@@ -15,9 +15,16 @@ export function mimique(args, options = {}) {
   return execFileSync(binary, args, { encoding: "utf8", cwd: root, maxBuffer: 1 << 28, ...options });
 }
 
+/** The servers of a run share their prepared stimuli (run.mjs): they are stored by the hash of all that they are made of. */
+function sharePacks(folder) {
+  const packs = process.env.MIMIQUE_TEST_PACKS;
+  if (packs && !existsSync(join(folder, "packs"))) symlinkSync(packs, join(folder, "packs"));
+}
+
 /** A running server: `{url, folder, database, said(), log(), researcher(), stop()}`. */
 export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimique-")), port, more = [] } = {}) {
   port ??= await freePort();
+  sharePacks(folder);
   const database = `sqlite:${join(folder, "answers.sqlite")}`;
   const args = ["serve", ...studies, "--listen", `127.0.0.1:${port}`, "--database", database, "--data-dir", folder, "--open-preview", "--json", ...more];
   // In development the pages may lie in a folder instead of the binary.
@@ -27,7 +34,11 @@ export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimi
   let err = "";
   child.stdout.on("data", (text) => (out += text));
   child.stderr.on("data", (text) => (err += text));
-  const ended = new Promise((done) => child.on("exit", (code, signal) => done({ code, signal })));
+  const ended = new Promise((done) => {
+    child.on("exit", (code, signal) => done({ code, signal }));
+    // A program that is not there never exits.
+    child.on("error", (error) => done({ code: error.message }));
+  });
   const url = `http://127.0.0.1:${port}`;
   const deadline = Date.now() + 120_000;
   for (;;) {
@@ -38,7 +49,7 @@ export async function serve(studies, { folder = mkdtempSync(join(tmpdir(), "mimi
       child.kill("SIGKILL");
       throw new Error(`the server did not become ready in two minutes:\n${err}`);
     }
-    await new Promise((done) => setTimeout(done, 200));
+    await new Promise((done) => setTimeout(done, 50));
   }
   return {
     url,

@@ -1,5 +1,24 @@
 // Small studies, made of parts: one performance, everything else as a test wants it.
 
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
+import { root } from "./server.mjs";
+
+/** The look of clips whose size is not what a test is about: drawing in software takes time in proportion to its pixels. */
+export const SMALL_LOOK = { width: 160, height: 160 };
+
+/** A copy of a study file of the repository with clips of that size: its path. */
+export function withSmallClips(file) {
+  const text = readFileSync(join(root, file), "utf8").replace(/"look": \{[^}]*\},?/, "");
+  const small = text.replace('"stimuli": {', `"stimuli": {\n    "look": ${JSON.stringify(SMALL_LOOK)},`);
+  assert.notEqual(small, text, `${file} has stimuli`);
+  const copy = join(mkdtempSync(join(tmpdir(), "mimique-small-")), basename(file));
+  writeFileSync(copy, small);
+  return copy;
+}
+
 /** A text in both languages. */
 export const text = (words) => ({ en: words, fr: `${words} (fr)` });
 

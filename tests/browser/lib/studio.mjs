@@ -1,7 +1,7 @@
 // The studio's page in tests: facts of a panel, sections, downloads, what axe finds.
 
-import { readFileSync } from "node:fs";
 import { WCAG, violations as found } from "./access.mjs";
+import { savedBytes } from "./saved.mjs";
 
 /** A row of facts of a panel. */
 function row(page, panel, name) {
@@ -31,7 +31,7 @@ export async function weightsHash(page, panel, old = "") {
 /** The bytes of a file that `act` saves. */
 export async function download(page, act) {
   const [file] = await Promise.all([page.waitForEvent("download", { timeout: 180_000 }), act()]);
-  return readFileSync(await file.path());
+  return savedBytes(file);
 }
 
 /** What axe finds against WCAG 2.2 AA. */
