@@ -1,5 +1,5 @@
-//! Brotli and gzip, made ahead: a file is compressed once and served many times. The pages that are embedded are
-//! compressed when the server is built, with more patience (`tight_brotli.rs`, `tight_gzip.rs`).
+//! Brotli and gzip, made ahead: a file is compressed once and served many times. `cargo xtask web` compresses
+//! the embedded pages more slowly and smaller.
 //!
 //! Browsers accept brotli only over TLS and from the same machine, gzip everywhere.
 
