@@ -434,3 +434,53 @@ fn collect(folder: &Path, prefix: &str, files: &mut Vec<(String, Vec<u8>)>) -> R
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::process::output;
+
+    /// The packages that a module is built of, by name and version, with their features.
+    fn packages(module: &Module) -> BTreeMap<String, String> {
+        let mut tree = cargo();
+        tree.args(["tree", "--locked", "--target", "wasm32-unknown-unknown", "--prefix", "none"]);
+        tree.args([
+            "--edges",
+            "normal,no-proc-macro",
+            "--format",
+            "{p}|{f}",
+            "--package",
+            module.package,
+        ]);
+        if let Some(features) = module.features {
+            tree.args(["--no-default-features", "--features", features]);
+        }
+        let tree = output(&mut tree).unwrap_or_else(|| panic!("cargo tree of {}", module.package));
+        let lines = tree.lines().filter_map(|line| line.trim_end_matches(" (*)").split_once('|'));
+        lines.map(|(package, features)| (package.to_owned(), features.to_owned())).collect()
+    }
+
+    #[test]
+    fn a_dependency_has_the_same_features_in_all_modules() {
+        // The participants' solver has no use for what these features of the solver bring, and the canvas of wgpu asks for
+        // fewer features of three small packages.
+        let may_differ = ["mimique-solver ", "hashbrown ", "indexmap ", "num-integer "];
+        let modules = || MODULES.iter().filter(|module| !module.example);
+        let studio = packages(modules().find(|module| module.name == "studio").unwrap());
+        assert!(studio.len() > 100, "{studio:?}");
+        for module in modules() {
+            for (package, features) in packages(module) {
+                let Some(of_the_studio) = studio.get(&package) else { continue };
+                assert!(
+                    *of_the_studio == features
+                        || may_differ.iter().any(|name| package.starts_with(name)),
+                    "{package} has the features {features:?} in {}, {of_the_studio:?} in the studio: it compiles twice; \
+                     add what is missing to web/unified/Cargo.toml",
+                    module.name
+                );
+            }
+        }
+    }
+}
