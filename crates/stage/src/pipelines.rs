@@ -8,10 +8,19 @@ use wgpu::{
 
 use crate::geometry::Layer;
 
-/// The text of a shader of `shaders`, bare of comments (`build.rs`).
-macro_rules! bare {
+/// A shader module as `build.rs` wrote it: its text.
+#[cfg(feature = "wgsl")]
+macro_rules! source {
     ($name:literal) => {
-        include_str!(concat!(env!("OUT_DIR"), "/", $name))
+        wgpu::ShaderSource::Wgsl(include_str!(concat!(env!("OUT_DIR"), "/", $name, ".wgsl")).into())
+    };
+}
+
+/// A shader module as `build.rs` wrote it: parsed.
+#[cfg(not(feature = "wgsl"))]
+macro_rules! source {
+    ($name:literal) => {
+        parsed(include_bytes!(concat!(env!("OUT_DIR"), "/", $name, ".naga")))
     };
 }
 
@@ -127,15 +136,12 @@ impl Pipelines {
     /// For pictures of the given colour format.
     pub fn new(device: &Device, format: TextureFormat) -> Self {
         let module = |label, source| shader(device, label, source);
-        let deform_module = module("deform.wgsl", bare!("deform.wgsl"));
-        let surface_module = module("surface.wgsl", bare!("surface.wgsl"));
-        let soften_module = module("soften.wgsl", bare!("soften.wgsl"));
-        let occlusion_module = module("occlusion.wgsl", bare!("occlusion.wgsl"));
-        let strain_module = module("strain.wgsl", bare!("strain.wgsl"));
-        let shade_module = module(
-            "shade.wgsl",
-            concat!(bare!("shade.wgsl"), bare!("hair.wgsl"), bare!("creases.wgsl")),
-        );
+        let deform_module = module("deform.wgsl", source!("deform"));
+        let surface_module = module("surface.wgsl", source!("surface"));
+        let soften_module = module("soften.wgsl", source!("soften"));
+        let occlusion_module = module("occlusion.wgsl", source!("occlusion"));
+        let strain_module = module("strain.wgsl", source!("strain"));
+        let shade_module = module("shade.wgsl", source!("shade"));
 
         let layouts = Layouts::new(device);
         let float32 = TextureFormat::Rgba32Float.into();
@@ -199,17 +205,19 @@ pub(crate) fn encode_pass(
     group: &BindGroupLayout,
     format: TextureFormat,
 ) -> RenderPipeline {
-    let module = shader(device, "encode.wgsl", bare!("encode.wgsl"));
+    let module = shader(device, "encode.wgsl", source!("encode"));
     table_pass(device, &module, group, ["cover_picture", "encode"], &format.into())
 }
 
-/// A shader module, with the shared declarations before it.
-fn shader(device: &Device, label: &str, source: &str) -> ShaderModule {
-    let scene = bare!("scene.wgsl");
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(label),
-        source: wgpu::ShaderSource::Wgsl([scene, source].concat().into()),
-    })
+fn shader(device: &Device, label: &str, source: wgpu::ShaderSource<'_>) -> ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
+}
+
+/// A shader module that `build.rs` parsed.
+#[cfg(not(feature = "wgsl"))]
+fn parsed(bytes: &[u8]) -> wgpu::ShaderSource<'static> {
+    let module = postcard::from_bytes(bytes).expect("written by the same version of naga");
+    wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module))
 }
 
 /// A pass of one triangle over every texel of a table.
