@@ -28,11 +28,12 @@ pub fn run(args: &Args) -> Result<()> {
     say(&format!("real data are looked for in {}", data().display()));
     let python = needed()?;
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
-    // Linking a module of the pages occupies one core: what does not embed the pages is checked and compiled alongside.
+    // Linking a module of the pages occupies one core: everything else is checked and compiled alongside. When the pages are
+    // finished, only what embeds them is compiled again.
     let beside = std::thread::scope(|scope| {
         let beside = scope.spawn(|| {
             let mut beside = lints();
-            beside.check("compiling the tests", nextest().args(WITHOUT_PAGES).arg("--no-run"));
+            beside.check("compiling the tests", nextest().arg("--no-run"));
             beside
         });
         tally.done("pages", || web::all(true));
@@ -106,9 +107,6 @@ const MODULES: [&str; 5] = [
     "mimique-web-report",
     "mimique-web-studio",
 ];
-
-/// Everything but the program, which embeds the pages: what nextest can compile before they are built.
-const WITHOUT_PAGES: [&str; 4] = ["--exclude", "mimique", "--exclude", "mimique-pages"];
 
 /// Cargo with the folder of the pages: a command without it would rebuild what embeds them.
 fn cargo_with_pages() -> Command {
