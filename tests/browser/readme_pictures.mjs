@@ -1,4 +1,4 @@
-// Makes the pictures of README.md in docs/: the animation of a trial (trial.webp), the studio, a study's dashboard and a report.
+// Makes the pictures of README.md in docs/: the animation of a trial (trial.webp) and the beginning of a report.
 //
 //   MIMIQUE_BINARY=target/release/mimique node readme_pictures.mjs        (needs img2webp of Debian's package webp)
 //
@@ -11,7 +11,7 @@ import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { open } from "./lib/browser.mjs";
 import { answer, go, leave, phase, place, settled } from "./lib/participant.mjs";
-import { mimique, preview, root, serve } from "./lib/server.mjs";
+import { mimique, root, serve } from "./lib/server.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "mimique-readme-"));
 const docs = join(root, "docs");
@@ -62,28 +62,18 @@ async function shot(page, name) {
   await page.screenshot({ path: join(docs, name), type: "jpeg", quality: 80 });
 }
 
-const server = await serve(["study-config/demo.json"]);
 if (wanted("trial")) {
+  const server = await serve(["study-config/demo.json"]);
   const browser = await open("webgl2", { viewport: { width: 880, height: 620 } });
   await trial(browser.page, server);
   await browser.close();
+  await server.stop();
 }
-if (wanted("dashboard") || wanted("report")) {
-  const answers = join(folder, "answers.csv");
-  mimique(["simulate", "study-config/demo.json", "--participants", "40", "--seed", "1", "--out", answers]);
-  mimique(["analyze", answers, "--study", "study-config/demo.json", "--out", join(folder, "report")]);
+if (wanted("report")) {
+  mimique(["simulate", "study-config/demo.json", "--participants", "40", "--out", join(folder, "simulated")]);
+  mimique(["analyze", join(folder, "simulated/demo_responses.csv"), "--study", "study-config/demo.json", "--out", join(folder, "report")]);
   const browser = await open("webgl2", { viewport: { width: 1100, height: 760 } });
   await browser.page.goto(pathToFileURL(join(folder, "report/report.html")).href);
   await shot(browser.page, "report.jpg");
   await browser.close();
 }
-if (wanted("studio")) {
-  const studio = await preview(["study-config/demo.json"]);
-  const browser = await open("webgl2", { viewport: { width: 1280, height: 800 } });
-  await browser.page.goto(studio.url);
-  await browser.page.waitForTimeout(20_000);
-  await shot(browser.page, "studio.jpg");
-  await browser.close();
-  await studio.stop();
-}
-await server.stop();
