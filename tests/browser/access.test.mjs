@@ -146,6 +146,8 @@ test("access: a language written from right to left, 320 px", { skip: unable, ti
       here = await leave(page, here, 60_000);
     }
     assert.equal(await direction(".stage-frame"), "ltr", "the left clip stands left");
+    // What is saved and loaded before that is shown by a progress bar that comes and goes.
+    await phase(page, "ready", 120_000);
     await look("trial");
     assert.deepEqual(browser.errors, [], "the console is clean");
   } finally {
