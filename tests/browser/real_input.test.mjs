@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { executable, open, screenshotFolder, skip } from "./lib/browser.mjs";
 import { parse } from "./lib/csv.mjs";
-import { answer, go, leave, phase, place } from "./lib/participant.mjs";
+import { answer, go, leave, phase, place, until } from "./lib/participant.mjs";
 import { mimique, root, serve } from "./lib/server.mjs";
 import { withSmallClips } from "./lib/small_study.mjs";
 
@@ -46,10 +46,12 @@ for (const backend of ["webgl2", "webgpu"]) {
         here = await leave(page, here, 60_000);
       }
       assert.deepEqual(browser.errors, [], "the console is clean");
-      const csv = mimique(["export", "--database", server.database, "--format", "csv"]);
-      const clips = new Set(parse(csv).map((row) => row.stimulus).filter(Boolean));
-      assert.equal(clips.size, 2, "two trials are stored");
-      const csvRows = parse(csv).filter((row) => row.stimulus);
+      // The page goes on while its answers are on their way.
+      let csvRows = [];
+      await until("two trials are stored", () => {
+        csvRows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.stimulus);
+        return new Set(csvRows.map((row) => row.stimulus)).size === 2;
+      });
       assert.ok(csvRows.every((row) => /^[0-9a-f]{64}$/.test(row.weights_hash)));
     } finally {
       await browser.close();
