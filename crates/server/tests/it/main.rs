@@ -29,6 +29,7 @@ mod sessions;
 mod simulated;
 mod standings;
 mod storage;
+mod streams;
 mod study;
 mod study_roles;
 mod traces;
@@ -167,6 +168,8 @@ topics! {
     researcher::the_page_shows_what_was_stored,
     researcher::a_change_is_told_at_once,
     researcher::stored_events_are_told_to_who_may_export,
+    streams::an_event_of_any_type_is_streamed,
+    streams::a_lost_right_ends_a_stream_of_a_busy_study,
     dashboard::the_list_of_participants_has_pages,
     dashboard::sums_are_kept_and_are_what_is_counted_anew,
     dashboard::a_deleted_session_leaves_no_sums,
