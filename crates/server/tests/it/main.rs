@@ -193,6 +193,7 @@ topics! {
     uploads::hostile_uploads_leave_nothing,
     withdrawal::a_participant_redeems_the_code_alone,
     withdrawal::codes_cannot_be_tried_without_end,
+    withdrawal::a_right_code_is_redeemed_after_wrong_ones,
     withdrawal::a_researcher_redeems_a_code_that_was_sent,
     withdrawal::a_withdrawal_of_the_page_is_in_the_log,
 }
