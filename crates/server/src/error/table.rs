@@ -85,6 +85,9 @@ refusals! {
     NulInText = BAD_REQUEST "bad-request",
         en "the text has a NUL in it"; "send text without one",
         fr "le texte contient un caractère nul"; "envoyez un texte sans lui";
+    NotOneHost = BAD_REQUEST "bad-request",
+        en "the request does not name exactly one host"; "send one Host header",
+        fr "la demande ne nomme pas exactement un hôte"; "envoyez un seul en-tête Host";
     NoSuchRange = RANGE_NOT_SATISFIABLE "no-such-range",
         en "the part asked for is beyond the end"; "ask for less",
         fr "la partie demandée dépasse la fin"; "demandez-en moins";

@@ -12,6 +12,7 @@ mod dashboard;
 mod defences;
 mod enrolment;
 mod exports;
+mod hostile_texts;
 mod limits;
 mod live;
 mod mimicry;
@@ -103,6 +104,11 @@ topics! {
     defences::metrics_are_the_operators,
     defences::logs_hold_no_answers,
     defences::panics_of_pages_are_logged,
+    defences::reports_of_panics_are_few,
+    defences::a_token_is_known_in_any_case,
+    defences::two_hosts_are_none,
+    defences::links_begin_with_the_address_that_people_type,
+    hostile_texts::no_text_of_a_participant_breaks_a_consumer,
     enrolment::who_only_looks_or_is_turned_away_holds_no_place_and_uses_no_identifier,
     enrolment::the_slot_of_a_drop_out_goes_to_the_next,
     enrolment::a_sign_of_life_keeps_the_slot,
