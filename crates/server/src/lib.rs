@@ -72,5 +72,6 @@ pub use state::hosted_study::{HostedStudy, Stage};
 pub use state::network::{Network, NetworkError};
 pub use state::settings::Settings;
 pub use state::start_error::AppError;
+pub use state::web_address::{folder_address, origin, server_address};
 pub use studio::{StudioFile, StudioFiles, StudioRole};
 pub use uploads::{ZIP_START, is_archive, unpack_study};

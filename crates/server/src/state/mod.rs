@@ -12,6 +12,7 @@ pub(crate) mod rate_limit;
 pub(crate) mod settings;
 pub(crate) mod start_error;
 pub(crate) mod starts;
+pub(crate) mod web_address;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
