@@ -197,6 +197,7 @@ topics! {
     uploads::what_fails_is_taken_away,
     uploads::an_owner_of_a_study_uploads_it_and_no_other,
     uploads::hostile_uploads_leave_nothing,
+    uploads::an_archive_is_refused_for_its_names_and_its_study_file,
     withdrawal::a_participant_redeems_the_code_alone,
     withdrawal::codes_cannot_be_tried_without_end,
     withdrawal::a_right_code_is_redeemed_after_wrong_ones,
