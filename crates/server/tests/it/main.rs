@@ -121,6 +121,7 @@ topics! {
     enrolment::the_study_has_hours,
     enrolment::an_identifier_takes_part_once,
     enrolment::a_browser_takes_part_once,
+    enrolment::a_browser_takes_part_once_in_a_frame_too,
     enrolment::nothing_finer_than_a_browsers_name_is_kept,
     enrolment::a_clock_that_jumps_back_loses_nothing,
     retention::answers_are_deleted_a_week_after_their_time_is_over,
