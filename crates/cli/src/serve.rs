@@ -12,11 +12,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use mimique_locale::counted;
 use mimique_server::{
     Access, App, Assets, EmbeddedFile, HostedStudy, Hosting, Network, PackStore, Settings, Stage,
-    prepare_hosting,
+    folder_address, log_panics, origin, prepare_hosting, server_address,
 };
 use mimique_stimulus::Places;
 use mimique_storage::{Storage, durable_file};
-use mimique_study::{MEDIA_PREFIX, Severity};
+use mimique_study::{MEDIA_PREFIX, RepeatPrevention, Severity};
 use serde_json::json;
 use tokio::net::TcpListener;
 
@@ -44,7 +44,7 @@ pub struct Args {
     web_dir: Option<PathBuf>,
     /// Address as people type it, e.g. `https://faces.example.org`, where a proxy stands before the
     /// server; https implies --behind-tls
-    #[arg(long)]
+    #[arg(long, value_parser = server_address)]
     public_url: Option<String>,
     /// Let everybody see the previews and the list of studies, not only researchers
     #[arg(long)]
@@ -66,7 +66,7 @@ pub struct Args {
     proxy: Vec<Network>,
     /// Address under which browsers find packs by their hash, instead of here:
     /// `https://cdn.example.org/packs`
-    #[arg(long)]
+    #[arg(long, value_parser = folder_address)]
     packs_url: Option<String>,
     /// Origin of a page that may embed the participants' pages in a frame: `https://survey.example.org`. May be given
     /// several times; without it none may
@@ -90,38 +90,9 @@ pub struct Args {
     requests_per_second: u32,
 }
 
-/// Scheme, host and port of a page, nothing behind them.
-fn origin(text: &str) -> Result<String, String> {
-    let host = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
-    let is_host = |host: &str| {
-        let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-.:[]".contains(&byte);
-        !host.is_empty() && host.bytes().all(plain)
-    };
-    match host {
-        Some(host) if is_host(host) => Ok(text.to_owned()),
-        _ => Err(
-            "no origin of a page; write https://HOST, or https://HOST:PORT, and nothing behind it"
-                .to_owned(),
-        ),
-    }
-}
-
 impl Args {
     fn settings(&self) -> anyhow::Result<Settings> {
-        let packs_address = self.packs_url.as_ref().map(|url| url.trim_end_matches('/').to_owned());
-        if let Some(url) = &packs_address {
-            let plain =
-                url.bytes().all(|byte| byte.is_ascii_graphic() && !b";,'\"<>".contains(&byte));
-            anyhow::ensure!(
-                plain && (url.starts_with("https://") || url.starts_with("http://")),
-                "--packs-url: {url}: no address of packs; write https://HOST/FOLDER"
-            );
-        }
-        if let Some(url) = self.public_url.as_ref().filter(|url| !url.starts_with("https://")) {
-            anyhow::ensure!(
-                url.starts_with("http://"),
-                "--public-url: {url}: no address; write https://HOST"
-            );
+        if let Some(url) = self.public_url.as_ref().filter(|url| url.starts_with("http://")) {
             anyhow::ensure!(
                 !self.behind_tls,
                 "--public-url: {url}: not encrypted, and --behind-tls says that it is; write https://…"
@@ -132,7 +103,7 @@ impl Args {
             behind_tls: self.behind_tls,
             behind_proxy: self.behind_proxy,
             proxies: self.proxy.clone(),
-            packs_address,
+            packs_address: self.packs_url.clone(),
             embedding: self.allow_embedding.clone(),
             metrics_token: self.metrics_token.clone().or_else(from_environment),
             most_connections: self.most_connections,
@@ -151,6 +122,7 @@ pub fn run(args: Args, pages: &[EmbeddedFile], json: bool) -> anyhow::Result<()>
         .with_target(false)
         .with_max_level(tracing::Level::INFO)
         .init();
+    log_panics();
     let settings = args.settings()?;
     let assets = crate::pages::assets(args.web_dir.as_deref(), pages)?;
     let cannot_listen =
@@ -194,6 +166,13 @@ async fn host(
     let storage =
         Storage::open(&database).await.with_context(|| Storage::without_password(&database))?;
     packs.load_earlier_versions(&storage, &args.data_dir.join("packs")).await?;
+    if let Some(study) = studies.iter().find(|study| is_repeatable_in_a_frame(study, &args)) {
+        eprintln!(
+            "warning: study {}: repeatPrevention \"browser\" does nothing in a frame of another site without https; \
+             give --public-url https://… or --behind-tls",
+            study.id()
+        );
+    }
     let hosted: Vec<Hosted> = studies.iter().map(Hosted::of).collect();
     let kind = storage.kind();
     let access = Access {
@@ -207,10 +186,7 @@ async fn host(
         .with_data_folder(args.data_dir.clone())
         .with_settings(settings);
     app.host_uploads().await?;
-    let base = match &args.public_url {
-        Some(url) => url.trim_end_matches('/').to_owned(),
-        None => format!("http://{}", reachable(listener.local_addr()?)),
-    };
+    let base = app.base_address(reachable(listener.local_addr()?));
     // Without an account there is a link that makes the first.
     let first_link = app.first_owner_link().await?;
     let researcher = format!("{base}{}", first_link.as_deref().unwrap_or("/researcher"));
@@ -237,6 +213,14 @@ async fn host(
     drop(out);
     mimique_server::serve(app, listener, stop_signal()).await?;
     Ok(())
+}
+
+/// Whether a study that takes each browser once may be embedded by pages of other sites without encryption: browsers
+/// then send no cookie from the frame, so that none is recognised.
+fn is_repeatable_in_a_frame(study: &HostedStudy, args: &Args) -> bool {
+    let is_public = args.public_url.as_ref().is_some_and(|url| url.starts_with("https://"));
+    let is_marked = study.study().recruitment.repeat_prevention == RepeatPrevention::Browser;
+    is_marked && !args.allow_embedding.is_empty() && !args.behind_tls && !is_public
 }
 
 /// A study that is hosted, as it is told at the start.

@@ -85,6 +85,9 @@ refusals! {
     NulInText = BAD_REQUEST "bad-request",
         en "the text has a NUL in it"; "send text without one",
         fr "le texte contient un caractère nul"; "envoyez un texte sans lui";
+    NotOneHost = BAD_REQUEST "bad-request",
+        en "the request does not name exactly one host"; "send one Host header",
+        fr "la demande ne nomme pas exactement un hôte"; "envoyez un seul en-tête Host";
     NoSuchRange = RANGE_NOT_SATISFIABLE "no-such-range",
         en "the part asked for is beyond the end"; "ask for less",
         fr "la partie demandée dépasse la fin"; "demandez-en moins";
@@ -279,6 +282,12 @@ refusals! {
     EntryTwice { entry: String } = UNPROCESSABLE_ENTITY "bad-upload",
         en "entry {entry:?}: another entry has this name, or one like it"; "rename one of them",
         fr "entrée {entry:?} : une autre entrée a ce nom ou un nom semblable"; "renommez l’une des deux";
+    EntryAndFolder { entry: String } = UNPROCESSABLE_ENTITY "bad-upload",
+        en "entry {entry:?}: one name is that of a file and of a folder"; "rename one of them",
+        fr "entrée {entry:?} : un même nom désigne un fichier et un dossier"; "renommez l’un des deux";
+    JsonTooLarge { entry: String, most_mib: u64 } = UNPROCESSABLE_ENTITY "bad-upload",
+        en "entry {entry:?}: the file of JSON is too large"; "{most_mib} MiB are taken at most",
+        fr "entrée {entry:?} : le fichier JSON est trop grand"; "{most_mib} Mio sont acceptés au plus";
     ContentTooLarge { entry: String } = UNPROCESSABLE_ENTITY "bad-upload",
         en "entry {entry:?}: the archive holds more than 2 GiB unpacked"; "leave out what the study does not name",
         fr "entrée {entry:?} : l’archive dépasse 2 Gio une fois décompressée"; "laissez de côté ce que l’étude ne nomme pas";

@@ -79,15 +79,19 @@ pub enum Cells {
     /// As they were answered: what scripts need.
     #[default]
     AsTheyAre,
-    /// Texts that a spreadsheet would take for a formula (they begin with `=`, `+`, `-`, `@`, a
-    /// tabulator or a line break) get an apostrophe before them; numbers stay as they are.
+    /// Texts that a spreadsheet would take for a formula (they begin with `=`, `+`, `-`, `@`, also in
+    /// their full width of East Asian keyboards, a tabulator or a line break) get an apostrophe before them; numbers stay as they are.
     Neutralised,
 }
+
+/// First characters of what spreadsheets compute; those of full width are read like the plain ones.
+const FORMULA_STARTS: [char; 11] =
+    ['=', '+', '-', '@', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}', '\t', '\r', '\n'];
 
 fn neutral(value: &Value) -> Cow<'_, str> {
     let text = cell(value);
     let is_text = value.is_string() && text.parse::<f64>().is_err();
-    if is_text && text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
+    if is_text && text.starts_with(FORMULA_STARTS) {
         return format!("'{text}").into();
     }
     text
@@ -115,6 +119,10 @@ mod tests {
             (json!("-2+3"), "'-2+3"),
             (json!("@sum"), "'@sum"),
             (json!("\t=1"), "'\t=1"),
+            (json!("\u{ff1d}1+1"), "'\u{ff1d}1+1"),
+            (json!("\u{ff0b}1"), "'\u{ff0b}1"),
+            (json!("\u{ff0d}1"), "'\u{ff0d}1"),
+            (json!("\u{ff20}sum"), "'\u{ff20}sum"),
             (json!("-2.5"), "-2.5"),
             (json!(-2.5), "-2.5"),
             (json!("a=1"), "a=1"),

@@ -30,18 +30,33 @@ pub(crate) fn set(
     written(&format!("{name}={value}; Path=/; Max-Age={seconds}; HttpOnly; SameSite=Lax"), secure)
 }
 
-/// A cookie that goes back to addresses below `path` alone, and from pages of this site alone, for a year.
+/// From which pages a browser sends a cookie back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pages {
+    /// Pages of this site.
+    OwnSite,
+    /// Also from a frame in a page of another site, to which the cookie then belongs (CHIPS). Browsers take such
+    /// cookies over encrypted connections only; over others it is [`Self::OwnSite`].
+    Frames,
+}
+
+/// A cookie that goes back to addresses below `path` alone, from these pages, for a year.
 pub(crate) fn set_below(
     path: &str,
     name: &str,
     value: &str,
     secure: bool,
+    pages: Pages,
 ) -> Result<HeaderValue, Error> {
     const YEAR: u32 = 365 * 24 * 3600;
-    written(
-        &format!("{name}={value}; Path={path}; Max-Age={YEAR}; HttpOnly; SameSite=Strict"),
-        secure,
-    )
+    let cookie = format!("{name}={value}; Path={path}; Max-Age={YEAR}; HttpOnly");
+    match pages {
+        Pages::Frames if secure => {
+            let cookie = format!("{cookie}; SameSite=None; Secure; Partitioned");
+            HeaderValue::from_str(&cookie).map_err(Error::internal)
+        }
+        _ => written(&format!("{cookie}; SameSite=Strict"), secure),
+    }
 }
 
 fn written(cookie: &str, secure: bool) -> Result<HeaderValue, Error> {
@@ -70,8 +85,17 @@ mod tests {
             "__Host-mimique_session=x; Path=/; Max-Age=60; HttpOnly; SameSite=Lax; Secure";
         assert_eq!(cookie, expected);
         assert!(!set("a", "x", 60, false).unwrap().to_str().unwrap().contains("Secure"));
-        let below = set_below("/api/studies/faces/", "mimique-faces", "x", true).unwrap();
+        let below = set_below("/api/studies/faces/", "mimique-faces", "x", true, Pages::OwnSite);
+        let below = below.unwrap();
         let expected = "mimique-faces=x; Path=/api/studies/faces/; Max-Age=31536000; HttpOnly; SameSite=Strict; Secure";
         assert_eq!(below, expected);
+        let framed = |secure| {
+            set_below("/", "mimique-faces", "x", secure, Pages::Frames)
+                .map(|cookie| cookie.to_str().unwrap().to_owned())
+                .unwrap()
+        };
+        assert!(framed(true).ends_with("; HttpOnly; SameSite=None; Secure; Partitioned"));
+        // Browsers refuse `SameSite=None` without `Secure`.
+        assert!(framed(false).ends_with("; HttpOnly; SameSite=Strict"));
     }
 }

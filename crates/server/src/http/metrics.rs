@@ -5,6 +5,7 @@ use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 
 use super::rate_limit::is_local;
+use crate::accounts::identity::bearer;
 use crate::error::Error;
 use crate::secret;
 use crate::state::App;
@@ -16,9 +17,7 @@ pub(super) async fn metrics(
     peer: Option<Extension<Peer>>,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
-    let given = headers
-        .get(header::AUTHORIZATION)
-        .and_then(|value| value.to_str().ok()?.strip_prefix("Bearer "));
+    let given = bearer(&headers);
     let token = app.settings.metrics_token.as_deref();
     let known = given.zip(token).is_some_and(|(given, token)| secret::same(given, token));
     // To anybody else there is nothing here.

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State};
-use axum::http::StatusCode;
+use axum::http::{StatusCode, Version, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
@@ -27,6 +27,7 @@ use crate::error::Error;
 use crate::participant::{pages, previews, withdrawal};
 use crate::researcher::handlers::{accounts, people, replays, streams, studies};
 use crate::state::App;
+use crate::state::rate_limit::Peer;
 use crate::studio;
 use crate::uploads::handlers as uploads;
 
@@ -59,6 +60,7 @@ pub fn router(app: App) -> Router {
         .method_not_allowed_fallback(|| async { Error::MethodNotAllowed })
         .layer(DefaultBodyLimit::max(LARGEST_BODY))
         .layer(middleware::from_fn(refuse_nul))
+        .layer(middleware::from_fn(one_host))
         .layer(middleware::from_fn(time_limit))
         .layer(CatchPanicLayer::custom(panicked))
         .layer(middleware::from_fn_with_state(app.clone(), rate_limit::limit_rate))
@@ -119,6 +121,18 @@ async fn refuse_nul(request: Request, next: Next) -> Response {
     let query = uri.query().unwrap_or_default();
     if uri.path().contains("%00") || query.contains("%00") {
         return Error::NulInText.into_response();
+    }
+    next.run(request).await
+}
+
+/// Links and the origins of forms are compared with the host: two of them would be told apart by no reader, and a
+/// proxy could read another one than this server does. Over a connection of HTTP/1.1 there has to be one.
+async fn one_host(request: Request, next: Next) -> Response {
+    let hosts = request.headers().get_all(header::HOST).iter().count();
+    let is_over_connection = request.extensions().get::<Peer>().is_some();
+    let needs_one = is_over_connection && request.version() >= Version::HTTP_11;
+    if hosts > 1 || (hosts == 0 && needs_one) {
+        return Error::NotOneHost.into_response();
     }
     next.run(request).await
 }

@@ -22,7 +22,7 @@ use super::marks::{browser_mark, cookie_name, marks};
 use super::resumed::resumed;
 use crate::clock::now_ms;
 use crate::error::Error;
-use crate::http::cookies;
+use crate::http::cookies::{self, Pages};
 use crate::http::extract::Body;
 use crate::http::rate_limit::caller_of;
 use crate::participant::withdrawal::withdrawal_hash;
@@ -94,7 +94,12 @@ pub(crate) async fn start(
     let mut response = Json(started(&app, token, &record)).into_response();
     if let Some(mark) = browser_mark {
         let path = format!("/api/studies/{}/", study.id());
-        let cookie = cookies::set_below(&path, &cookie_name(study), &mark, app.is_encrypted())?;
+        let pages = match app.settings.embedding.is_empty() {
+            true => Pages::OwnSite,
+            false => Pages::Frames,
+        };
+        let name = cookie_name(study);
+        let cookie = cookies::set_below(&path, &name, &mark, app.is_encrypted(), pages)?;
         response.headers_mut().insert(header::SET_COOKIE, cookie);
     }
     Ok(response)

@@ -10,7 +10,7 @@ use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
 use mimique_locale::Language;
-use mimique_storage::Withdrawal;
+use mimique_storage::{StorageError, Withdrawal};
 use mimique_study::Multilingual as _;
 use serde::Deserialize;
 
@@ -25,9 +25,8 @@ use crate::secret;
 use crate::state::App;
 use crate::state::rate_limit::Peer;
 
-/// Codes tried from one address a second, in the long run; a class that withdraws together has ten
-/// times as many at once. A code has 80 bits.
-const TRIED_PER_SECOND: u32 = 5;
+/// Wrong codes from one address a second, in the long run; ten times as many at once. A code has 80 bits.
+const WRONG_PER_SECOND: u32 = 5;
 
 /// What the database keeps of a withdrawal code, however it was typed.
 pub fn withdrawal_hash(code: &str) -> String {
@@ -90,14 +89,21 @@ async fn deleted(
     form: Result<Anonymous<Code>, Error>,
 ) -> Result<Withdrawal, Error> {
     let Anonymous { form, .. } = form?;
-    if let Some(address) = caller_of(app, headers, peer)
-        && !app.code_limits.allow(address, TRIED_PER_SECOND, Instant::now())
-    {
-        return Err(Error::TooManyAttempts);
-    }
     let hash = withdrawal_hash(&form.code);
     let who = "(participant)";
-    Ok(app.storage.withdraw_by_code(Some(study), &hash, who, now_ms()).await?)
+    match app.storage.withdraw_by_code(Some(study), &hash, who, now_ms()).await {
+        Err(StorageError::UnknownWithdrawalCode) if !may_err(app, headers, peer) => {
+            Err(Error::TooManyAttempts)
+        }
+        done => Ok(done?),
+    }
+}
+
+/// Whether a wrong code from this address is one of few. A right one is redeemed however many wrong ones came before
+/// it: in a classroom, one address is many people.
+fn may_err(app: &App, headers: &HeaderMap, peer: Option<Peer>) -> bool {
+    caller_of(app, headers, peer)
+        .is_none_or(|address| app.code_limits.allow(address, WRONG_PER_SECOND, Instant::now()))
 }
 
 async fn answer(

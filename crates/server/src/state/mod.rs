@@ -6,11 +6,13 @@ pub(crate) mod catalogue;
 pub(crate) mod hosted_study;
 pub(crate) mod metrics;
 pub(crate) mod network;
+pub(crate) mod panic_reports;
 pub(crate) mod preparations;
 pub(crate) mod rate_limit;
 pub(crate) mod settings;
 pub(crate) mod start_error;
 pub(crate) mod starts;
+pub(crate) mod web_address;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -24,6 +26,7 @@ use catalogue::Catalogue;
 use hosted_study::HostedStudy;
 use metrics::Metrics;
 use mimique_storage::{Registered, Storage, StorageError, StudyVersion};
+use panic_reports::PanicReports;
 use rate_limit::Limits;
 use settings::Settings;
 use start_error::AppError;
@@ -49,8 +52,10 @@ pub struct App {
     pub(crate) login_limits: Arc<Limits>,
     /// Sessions begun.
     pub(crate) starts: Arc<Starts>,
-    /// Withdrawal codes tried.
+    /// Wrong withdrawal codes.
     pub(crate) code_limits: Arc<Limits>,
+    /// Reports of panics in browsers.
+    pub(crate) panic_reports: Arc<PanicReports>,
     /// What the sessions' plans admit.
     pub(crate) admissions: Arc<Admissions>,
     pub(crate) metrics: Arc<Metrics>,
@@ -103,6 +108,7 @@ impl App {
             login_limits: Arc::default(),
             starts: Arc::default(),
             code_limits: Arc::default(),
+            panic_reports: Arc::default(),
             admissions: Arc::default(),
             metrics: Arc::default(),
             last_ready: Arc::default(),
@@ -149,6 +155,16 @@ impl App {
     pub(crate) fn is_encrypted(&self) -> bool {
         let public = self.access.public_url.as_deref();
         self.settings.behind_tls || public.is_some_and(|url| url.starts_with("https://"))
+    }
+
+    /// What links to this server begin with, where it listens at this address: the address that people type, or this
+    /// one, encrypted where [`Settings::behind_tls`] says so.
+    pub fn base_address(&self, listening: std::net::SocketAddr) -> String {
+        if let Some(url) = &self.access.public_url {
+            return url.trim_end_matches('/').to_owned();
+        }
+        let scheme = if self.is_encrypted() { "https" } else { "http" };
+        format!("{scheme}://{listening}")
     }
 
     /// How the version came to be that was served of a study at the start.

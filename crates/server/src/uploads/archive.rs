@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Component, Path, PathBuf};
 
 use zip::ZipArchive;
@@ -16,6 +16,11 @@ pub(super) const LARGEST_UPLOAD: u64 = 512 * 1024 * 1024;
 const LARGEST_CONTENT: u64 = 2 * 1024 * 1024 * 1024;
 /// Files and folders in it.
 const MOST_ENTRIES: usize = 5000;
+/// Bytes of a study file, alone or in an archive: a small archive must not become gigabytes of parsed JSON.
+const LARGEST_STUDY: u64 = 8 * MIB;
+/// Bytes of another file of JSON in an archive.
+const LARGEST_JSON: u64 = 16 * MIB;
+const MIB: u64 = 1024 * 1024;
 /// Folders within folders.
 const DEEPEST: usize = 12;
 /// Bytes of a name.
@@ -45,8 +50,11 @@ pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, Error> {
     if archive.len() > MOST_ENTRIES {
         return Err(Error::TooManyEntries { entries: archive.len(), most: MOST_ENTRIES });
     }
+    if let Some(entry) = repeated_name(upload, &archive)? {
+        return Err(Error::EntryTwice { entry });
+    }
     let mut left = LARGEST_CONTENT;
-    let mut names = BTreeSet::new();
+    let mut names = Names::default();
     for index in 0..archive.len() {
         let mut entry = archive
             .by_index(index)
@@ -59,21 +67,84 @@ pub(super) fn unpack(upload: &Path, folder: &Path) -> Result<PathBuf, Error> {
         if entry.is_symlink() {
             return Err(Error::EntryLink { entry: name });
         }
+        names.add(&inside, entry.is_dir(), &name)?;
         if entry.is_dir() {
             fs::create_dir_all(folder.join(inside))?;
             continue;
-        }
-        // Two names may be one on a disk that does not tell large letters from small ones.
-        if !names.insert(inside.to_string_lossy().to_lowercase()) {
-            return Err(Error::EntryTwice { entry: name });
         }
         let path = folder.join(&inside);
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent)?;
         }
-        left -= copy(&mut entry, &path, left, &name)?;
+        let is_json = inside.extension().is_some_and(|own| own.eq_ignore_ascii_case("json"));
+        let most = if is_json { left.min(LARGEST_JSON) } else { left };
+        left -= copy(&mut entry, &path, most, &name).map_err(|error| match error {
+            Error::ContentTooLarge { entry } if most < left => {
+                Error::JsonTooLarge { entry, most_mib: LARGEST_JSON / MIB }
+            }
+            error => error,
+        })?;
     }
-    study_file(folder)
+    let study = study_file(folder)?;
+    if fs::metadata(&study)?.len() > LARGEST_STUDY {
+        let entry = study.strip_prefix(folder).unwrap_or(&study).display().to_string();
+        return Err(Error::JsonTooLarge { entry, most_mib: LARGEST_STUDY / MIB });
+    }
+    Ok(study)
+}
+
+/// Names of files and folders so far, in small letters: two names may be one on a disk that does not tell large letters
+/// from small ones.
+#[derive(Default)]
+struct Names {
+    files: BTreeSet<PathBuf>,
+    folders: BTreeSet<PathBuf>,
+}
+
+impl Names {
+    fn add(&mut self, inside: &Path, is_folder: bool, name: &str) -> Result<(), Error> {
+        let entry = || name.to_owned();
+        let inside = PathBuf::from(inside.to_string_lossy().to_lowercase());
+        let above: Vec<PathBuf> = inside.ancestors().skip(1).map(Path::to_owned).collect();
+        let others = if is_folder { &self.files } else { &self.folders };
+        if others.contains(&inside) || above.iter().any(|folder| self.files.contains(folder)) {
+            return Err(Error::EntryAndFolder { entry: entry() });
+        }
+        self.folders.extend(above);
+        if is_folder {
+            self.folders.insert(inside);
+        } else if !self.files.insert(inside) {
+            return Err(Error::EntryTwice { entry: entry() });
+        }
+        Ok(())
+    }
+}
+
+/// A name that two entries of the archive's directory have: the reader of archives gives the last one alone.
+fn repeated_name(upload: &Path, archive: &ZipArchive<File>) -> Result<Option<String>, Error> {
+    /// A header of the directory, up to its name; the lengths of name, extra field and comment begin at 28.
+    const HEADER: usize = 46;
+    const SIGNATURE: &[u8; 4] = b"PK\x01\x02";
+    let mut directory = BufReader::new(File::open(upload)?);
+    directory.seek(SeekFrom::Start(archive.central_directory_start()))?;
+    let mut names = BTreeSet::new();
+    let mut header = [0; HEADER];
+    while directory.read_exact(&mut header).is_ok() && header.starts_with(SIGNATURE) {
+        let length = |at: usize| u16::from_le_bytes([header[at], header[at + 1]]);
+        let mut name = vec![0; usize::from(length(28))];
+        if directory.read_exact(&mut name).is_err() {
+            break;
+        }
+        directory.seek_relative(i64::from(length(30)) + i64::from(length(32)))?;
+        let text = String::from_utf8_lossy(&name).into_owned();
+        if !names.insert(name) {
+            return Ok(Some(text));
+        }
+        if names.len() > MOST_ENTRIES {
+            return Err(Error::TooManyEntries { entries: names.len(), most: MOST_ENTRIES });
+        }
+    }
+    Ok(None)
 }
 
 /// A path below the folder, or none.
@@ -110,7 +181,6 @@ fn damaged(entry: String, problem: String) -> Error {
 }
 
 fn single_file(upload: &Path, folder: &Path) -> Result<PathBuf, Error> {
-    const LARGEST_STUDY: u64 = 8 * 1024 * 1024;
     let size = fs::metadata(upload)?.len();
     let mut start = [0; 64];
     let read = File::open(upload)?.read(&mut start)?;

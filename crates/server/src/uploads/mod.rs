@@ -168,6 +168,11 @@ async fn host(
     let id = study.study().id.clone();
     let told = preparation.clone();
     let outcome = prepare_and_host(&app, &study_file, study, archive_hash.clone(), told).await;
+    let folders = [study_file.parent(), app.data_folder.as_deref()];
+    let named = |text: String| {
+        folders.into_iter().flatten().fold(text, |text, folder| below(&text, folder))
+    };
+    let outcome = outcome.map(|warnings| warnings.into_iter().map(named).collect()).map_err(named);
     preparation.state = match outcome {
         Ok(warnings) => Preparing::Ready { warnings },
         Err(problem) => {
@@ -177,6 +182,14 @@ async fn host(
     };
     if let Err(error) = preparation.note(&app.storage, &id).await {
         tracing::error!("what became of an uploaded study cannot be noted: {error}");
+    }
+}
+
+/// A text that names files by their paths below a folder: where the server's folders are is nothing for a page.
+fn below(text: &str, folder: &Path) -> String {
+    match folder.to_str().map(|folder| folder.trim_end_matches('/')) {
+        None | Some("" | ".") => text.to_owned(),
+        Some(folder) => text.replace(&format!("{folder}/"), ""),
     }
 }
 

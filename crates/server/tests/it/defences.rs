@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::sync::{Arc, Mutex};
 
-use axum::http::{HeaderName, StatusCode, header};
+use axum::body::Body;
+use axum::http::{HeaderName, Request, StatusCode, header};
 use mimique_server::Settings;
 use mimique_storage::StorageError;
 use serde_json::json;
@@ -184,6 +185,91 @@ pub async fn panics_of_pages_are_logged(server: &TestServer) {
         "place=\"crates/solver/src/fit.rs:7:9\"",
     ] {
         assert!(line.contains(part), "{part} in {line}");
+    }
+}
+
+/// A page that panics again and again fills no log: a few reports of an address are written in a minute, and what is
+/// repeated is counted.
+pub async fn reports_of_panics_are_few(server: &TestServer) {
+    let server = server.with_settings(Settings { behind_proxy: true, ..Settings::default() });
+    let (log, _guard) = logged();
+    let send = async |address: &str, message: &str| {
+        let report = json!({
+            "module": "solver", "backend": "", "study": "faces", "message": message, "place": "a.rs:7:9",
+        });
+        let request = Request::post("/api/panics")
+            .header("x-real-ip", address)
+            .header(header::CONTENT_TYPE, "application/json")
+            .body(Body::from(report.to_string()))
+            .unwrap();
+        server.send(request).await
+    };
+    let mut taken = 0;
+    for number in 0..200 {
+        let answer = send("192.0.2.1", &format!("panic {number}")).await;
+        match answer.status {
+            StatusCode::OK => taken += 1,
+            _ => drop(answer.refused(StatusCode::TOO_MANY_REQUESTS, "too-often")),
+        }
+    }
+    assert!((1..=10).contains(&taken), "{taken} of 200");
+    // The same report from many browsers is one line, and the number of its repetitions.
+    for address in 0..100 {
+        let () = send(&format!("198.51.100.{address}"), "the same").await.ok();
+    }
+    let text = log.text();
+    assert_eq!(text.matches("panic=\"the same\"").count(), 1, "{text}");
+    let () = send("203.0.113.1", "another").await.ok();
+    assert_eq!(log.text().matches("a module panicked in a browser").count(), taken + 2);
+}
+
+/// The name of a scheme of authentication is written in any case (RFC 9110).
+pub async fn a_token_is_known_in_any_case(server: &TestServer) {
+    let mut owner = crate::people::owner(server).await;
+    let key = crate::people::token(server, &mut owner, mimique_storage::Role::Analyst).await;
+    let settings = Settings { metrics_token: Some("open".into()), ..Settings::default() };
+    let server = server.with_settings(settings);
+    for scheme in ["Bearer", "bearer", "BEARER", "Bearer "] {
+        for (path, key) in
+            [("/researcher/studies/faces/export/csv", key.as_str()), ("/metrics", "open")]
+        {
+            let value = format!("{scheme} {key}");
+            let answer = server.get_with(path, &[(header::AUTHORIZATION, &value)]).await;
+            assert_eq!(answer.status, StatusCode::OK, "{scheme:?} {path}");
+        }
+    }
+    for wrong in ["Basic", "Bearerx", ""] {
+        let value = format!("{wrong} {key}");
+        let path = "/researcher/studies/faces/export/csv";
+        let answer = server.get_with(path, &[(header::AUTHORIZATION, &value)]).await;
+        answer.refused(StatusCode::UNAUTHORIZED, "log-in-first");
+    }
+}
+
+/// What is printed at the start can be opened: links begin as people reach the server.
+pub async fn links_begin_with_the_address_that_people_type(server: &TestServer) {
+    let listening = "127.0.0.1:8080".parse().unwrap();
+    assert_eq!(server.app.base_address(listening), "http://127.0.0.1:8080");
+    let behind_tls = Settings { behind_tls: true, ..Settings::default() };
+    let app = server.app.clone().with_settings(behind_tls);
+    assert_eq!(app.base_address(listening), "https://127.0.0.1:8080");
+    let public_url = Some("https://faces.example/".to_owned());
+    let app = app.with_access(mimique_server::Access { public_url, ..Default::default() });
+    assert_eq!(app.base_address(listening), "https://faces.example");
+}
+
+/// Two hosts in one request are none that links and origins could be compared with (RFC 9112).
+pub async fn two_hosts_are_none(server: &TestServer) {
+    let hosts = async |hosts: &[&str]| {
+        let mut request = Request::get("/healthz");
+        for host in hosts {
+            request = request.header(header::HOST, *host);
+        }
+        server.send(request.body(Body::empty()).unwrap()).await
+    };
+    assert_eq!(hosts(&["faces.example"]).await.status, StatusCode::OK);
+    for wrong in [&["faces.example", "evil.example"][..], &["faces.example", "faces.example"]] {
+        hosts(wrong).await.refused(StatusCode::BAD_REQUEST, "bad-request");
     }
 }
 

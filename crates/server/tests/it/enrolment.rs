@@ -241,6 +241,24 @@ pub async fn a_browser_takes_part_once(server: &TestServer) {
     server.storage.close().await;
 }
 
+/// Browsers send the mark back from a frame of another site only where it is `SameSite=None`, which they take over
+/// encrypted connections alone.
+pub async fn a_browser_takes_part_once_in_a_frame_too(server: &TestServer) {
+    let server = server.restart_with(vec![with(json!({"repeatPrevention": "browser"}))]).await;
+    let embedding = vec!["https://survey.example".to_owned()];
+    for (behind_tls, embedding, expected) in [
+        (true, embedding.clone(), "SameSite=None; Secure; Partitioned"),
+        (true, Vec::new(), "SameSite=Strict; Secure"),
+        (false, embedding, "SameSite=Strict"),
+    ] {
+        let settings = mimique_server::Settings { behind_tls, embedding, ..Default::default() };
+        let answer = begin(&server.with_settings(settings), 1, "en", "", "").await;
+        let cookie = answer.header(header::SET_COOKIE);
+        assert!(cookie.ends_with(expected), "{cookie}");
+    }
+    server.storage.close().await;
+}
+
 pub async fn nothing_finer_than_a_browsers_name_is_kept(server: &TestServer) {
     let agent = "Mozilla/5.0 (X11; Linux x86_64; rv:140.0) Gecko/20100101 Firefox/140.0";
     let body = json!({

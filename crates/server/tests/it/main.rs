@@ -12,6 +12,7 @@ mod dashboard;
 mod defences;
 mod enrolment;
 mod exports;
+mod hostile_texts;
 mod limits;
 mod live;
 mod mimicry;
@@ -29,6 +30,7 @@ mod sessions;
 mod simulated;
 mod standings;
 mod storage;
+mod streams;
 mod study;
 mod study_roles;
 mod traces;
@@ -102,6 +104,11 @@ topics! {
     defences::metrics_are_the_operators,
     defences::logs_hold_no_answers,
     defences::panics_of_pages_are_logged,
+    defences::reports_of_panics_are_few,
+    defences::a_token_is_known_in_any_case,
+    defences::two_hosts_are_none,
+    defences::links_begin_with_the_address_that_people_type,
+    hostile_texts::no_text_of_a_participant_breaks_a_consumer,
     enrolment::who_only_looks_or_is_turned_away_holds_no_place_and_uses_no_identifier,
     enrolment::the_slot_of_a_drop_out_goes_to_the_next,
     enrolment::a_sign_of_life_keeps_the_slot,
@@ -114,6 +121,7 @@ topics! {
     enrolment::the_study_has_hours,
     enrolment::an_identifier_takes_part_once,
     enrolment::a_browser_takes_part_once,
+    enrolment::a_browser_takes_part_once_in_a_frame_too,
     enrolment::nothing_finer_than_a_browsers_name_is_kept,
     enrolment::a_clock_that_jumps_back_loses_nothing,
     retention::answers_are_deleted_a_week_after_their_time_is_over,
@@ -167,6 +175,8 @@ topics! {
     researcher::the_page_shows_what_was_stored,
     researcher::a_change_is_told_at_once,
     researcher::stored_events_are_told_to_who_may_export,
+    streams::an_event_of_any_type_is_streamed,
+    streams::a_lost_right_ends_a_stream_of_a_busy_study,
     dashboard::the_list_of_participants_has_pages,
     dashboard::sums_are_kept_and_are_what_is_counted_anew,
     dashboard::a_deleted_session_leaves_no_sums,
@@ -188,8 +198,10 @@ topics! {
     uploads::what_fails_is_taken_away,
     uploads::an_owner_of_a_study_uploads_it_and_no_other,
     uploads::hostile_uploads_leave_nothing,
+    uploads::an_archive_is_refused_for_its_names_and_its_study_file,
     withdrawal::a_participant_redeems_the_code_alone,
     withdrawal::codes_cannot_be_tried_without_end,
+    withdrawal::a_right_code_is_redeemed_after_wrong_ones,
     withdrawal::a_researcher_redeems_a_code_that_was_sent,
     withdrawal::a_withdrawal_of_the_page_is_in_the_log,
 }

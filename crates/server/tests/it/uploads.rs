@@ -347,7 +347,9 @@ pub async fn what_fails_is_taken_away(server: &TestServer) {
     let answer = upload(&server, &owner, &archive).await;
     assert_eq!(answer.status, StatusCode::SEE_OTHER, "{}", answer.text());
     let page = prepared(&server, &mut owner, "broken").await;
-    assert!(page.contains("role=\"alert\""), "{page}");
+    assert!(page.contains("role=\"alert\"") && page.contains("head.glb"), "{page}");
+    // Files are named as the archive names them: where the server has put them is nothing for a page.
+    assert!(!page.contains(&folder.path().display().to_string()), "{page}");
     let uploads = folder.path().join("uploads");
     assert_eq!(std::fs::read_dir(&uploads).unwrap().count(), 0);
     // Nor does what the server hosts by itself.
@@ -401,4 +403,41 @@ pub async fn an_owner_of_a_study_uploads_it_and_no_other(server: &TestServer) {
     let live = lab.send(&server, "/researcher/studies/theirs/stage", &[("stage", "live")]).await;
     assert_eq!(live.status, StatusCode::SEE_OTHER, "{}", live.text());
     assert_eq!(server.start_in("theirs", 1).await.stage, "live");
+}
+
+/// One name twice, a name that is a file and a folder, and JSON that would not fit into memory are refused by name.
+pub async fn an_archive_is_refused_for_its_names_and_its_study_file(server: &TestServer) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = with_folder(server, folder.path());
+    let mut owner = owner(&server).await;
+    owner.open(&server, "/researcher/upload").await;
+    // No writer makes two entries of one name: the second is renamed in the bytes.
+    let mut twice = packed(&[("study.json", b"{}"), ("study.jsox", b"{}")]);
+    while let Some(at) = twice.windows(10).position(|bytes| bytes == b"study.jsox") {
+        twice[at + 9] = b'n';
+    }
+    let mut ones = b"[".to_vec();
+    ones.extend(b"1,".repeat(9 * 1024 * 1024));
+    ones.extend(b"1]");
+    for (name, archive, expected) in [
+        ("twice", twice, "another entry has this name"),
+        ("file and folder", packed(&[("study.json", b"{}"), ("a", b""), ("a/b", b"")]), "a/b"),
+        (
+            "folder and file",
+            packed(&[("study.json", b"{}"), ("a/b", b""), ("A", b"")]),
+            "&quot;A&quot;",
+        ),
+        ("large study", packed(&[("study.json", ones.as_slice())]), "study.json"),
+        (
+            "large settings",
+            packed(&[("study.json", b"{}"), ("take.repair.json", ones.as_slice())]),
+            "take.repair.json",
+        ),
+    ] {
+        let answer = upload(&server, &owner, &archive).await;
+        assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY, "{name}: {}", answer.text());
+        assert!(answer.text().contains(expected), "{name}: {}", answer.text());
+        let path = folder.path().display().to_string();
+        assert!(!answer.text().contains(&path), "{name}: {}", answer.text());
+    }
 }

@@ -74,21 +74,49 @@ pub async fn a_participant_redeems_the_code_alone(server: &TestServer) {
     server.storage.close().await;
 }
 
+/// The answer to a code that is sent from an address.
+async fn attempted(
+    server: &TestServer,
+    browser: &Browser,
+    address: &str,
+    code: &str,
+) -> StatusCode {
+    let request = axum::http::Request::post(PAGE)
+        .header(header::HOST, crate::people::HOST)
+        .header(header::ORIGIN, ORIGIN)
+        .header(header::COOKIE, browser.cookie())
+        .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
+        .header(HeaderName::from_static("x-real-ip"), address)
+        .body(axum::body::Body::from(encoded(&[("code", code), ("csrf", &browser.csrf)])));
+    server.send(request.unwrap()).await.status
+}
+
+/// In a classroom one address is many people: the wrong codes of some do not refuse the right one of another.
+pub async fn a_right_code_is_redeemed_after_wrong_ones(server: &TestServer) {
+    let started = server.start(1).await;
+    server.stored(&started.session, &events(0..4)).await;
+    let server = server.with_settings(Settings { behind_proxy: true, ..Settings::default() });
+    let mut browser = Browser::default();
+    browser.open(&server, PAGE).await;
+    let mut last = StatusCode::OK;
+    for _ in 0..80 {
+        last = attempted(&server, &browser, "192.0.2.1", "X").await;
+    }
+    assert_eq!(last, StatusCode::TOO_MANY_REQUESTS);
+    let right = attempted(&server, &browser, "192.0.2.1", &started.withdrawal_code).await;
+    assert_eq!(right, StatusCode::OK);
+    let session = &server.storage.sessions("faces").await.unwrap()[0];
+    assert_eq!((session.standing, session.event_count), (Standing::Withdrawn, 0));
+    // Wrong ones are refused as before.
+    let wrong = attempted(&server, &browser, "192.0.2.1", "X").await;
+    assert_eq!(wrong, StatusCode::TOO_MANY_REQUESTS);
+}
+
 pub async fn codes_cannot_be_tried_without_end(server: &TestServer) {
     let server = server.with_settings(Settings { behind_proxy: true, ..Settings::default() });
     let mut browser = Browser::default();
     browser.open(&server, PAGE).await;
-    let attempt = |address: &'static str| {
-        let request = axum::http::Request::post(PAGE)
-            .header(header::HOST, crate::people::HOST)
-            .header(header::ORIGIN, ORIGIN)
-            .header(header::COOKIE, browser.cookie())
-            .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
-            .header(HeaderName::from_static("x-real-ip"), address)
-            .body(axum::body::Body::from(encoded(&[("code", "X"), ("csrf", &browser.csrf)])));
-        let server = &server;
-        async move { server.send(request.unwrap()).await.status }
-    };
+    let attempt = async |address: &'static str| attempted(&server, &browser, address, "X").await;
     let mut tried = 0;
     for _ in 0..80 {
         match attempt("192.0.2.1").await {

@@ -14,6 +14,7 @@ use mimique_storage::{Role, SessionState, StorageError};
 use serde::Deserialize;
 use serde_json::json;
 use tokio::sync::mpsc;
+use tokio::time::Instant;
 use tokio_stream::wrappers::ReceiverStream;
 
 use crate::accounts::identity::Researcher;
@@ -22,8 +23,11 @@ use crate::http::extract::Asked;
 use crate::researcher::dashboard::session_sums::FORM;
 use crate::state::App;
 
-/// A stream's right to go on is looked at this often.
-const RECHECK: Duration = Duration::from_secs(15);
+/// A stream goes on for so long after its reader has lost the right to it, however busy the study is.
+const RECHECK: Duration = Duration::from_secs(2);
+
+/// Longest name of an event in a stream, bytes.
+const LONGEST_NAME: usize = 64;
 
 /// No beat is this one.
 const NEVER: &str = "never";
@@ -55,8 +59,8 @@ pub(crate) struct EventsQuery {
     from: From,
 }
 
-/// Each event of a study's sessions, as soon as it is stored (within a second): `event` is its type, `id`
-/// `PARTICIPANT.SEQUENCE`, `data` the participant's number, condition, stage and version of the study with the event.
+/// Each event of a study's sessions, as soon as it is stored (within a second): `event` is its type, or `event` where
+/// the type is no plain word, `id` `PARTICIPANT.SEQUENCE`, `data` the participant's number, condition, stage and version of the study with the event.
 pub(crate) async fn events(
     State(app): State<App>,
     Path(study): Path<String>,
@@ -64,7 +68,17 @@ pub(crate) async fn events(
     headers: HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
-    let told = Told::Events { from: query.from, sent: None };
+    who.needs_in(&study, Role::Analyst)?;
+    app.study(&study)?;
+    // Looked up before the answer: what is stored after it belongs to the stream, however late its first look is.
+    let mut sent = BTreeMap::new();
+    if query.from == From::Now {
+        for state in app.storage.session_states(&study, FORM).await? {
+            let before = state.counted.event_count;
+            sent.insert(state.key, Sent { before, sequences: BTreeSet::new() });
+        }
+    }
+    let told = Told::Events { sent };
     stream(app, headers, &who, study, Role::Analyst, told)
 }
 
@@ -77,10 +91,8 @@ enum Told {
     },
     /// The events themselves.
     Events {
-        /// Where it begins.
-        from: From,
-        /// What was sent of each session, by its key; none before the first look.
-        sent: Option<BTreeMap<i64, Sent>>,
+        /// What need not be sent of each session, by its key.
+        sent: BTreeMap<i64, Sent>,
     },
 }
 
@@ -100,23 +112,18 @@ impl Told {
         study: &str,
         beat: &str,
     ) -> Result<Vec<Event>, StorageError> {
-        let (from, sent) = match self {
+        let sent = match self {
             Self::Changes { told } if told == beat => return Ok(Vec::new()),
             Self::Changes { told } => {
                 beat.clone_into(told);
                 return Ok(vec![Event::default().event("changed").data(beat)]);
             }
-            Self::Events { from, sent } => (*from, sent),
+            Self::Events { sent } => sent,
         };
         let states = app.storage.session_states(study, FORM).await?;
-        let is_first = sent.is_none();
-        let sent = sent.get_or_insert_default();
         for state in states.iter().filter(|state| !state.is_deleted) {
             let stored = state.counted.event_count;
-            let known = sent.entry(state.key).or_insert_with(|| {
-                let there = is_first && from == From::Now;
-                Sent { before: if there { stored } else { 0 }, sequences: BTreeSet::new() }
-            });
+            let known = sent.entry(state.key).or_default();
             if stored <= known.before + known.sequences.len() as u64 {
                 continue;
             }
@@ -133,7 +140,7 @@ impl Told {
 }
 
 fn line(state: &SessionState, event: &Stored) -> Event {
-    let kind = event.body["type"].as_str().unwrap_or("event");
+    let kind = event.body["type"].as_str().filter(|kind| is_word(kind)).unwrap_or("event");
     let data = json!({
         "participant": state.participant,
         "condition": state.condition,
@@ -143,6 +150,59 @@ fn line(state: &SessionState, event: &Stored) -> Event {
     });
     let id = format!("{}.{}", state.participant, event.sequence);
     Event::default().event(kind).id(id).data(data.to_string())
+}
+
+/// Whether a type can name an event of a stream. Pages of participants send any text as the type: a line break in it
+/// would end the field, and the writer of the stream panics on one.
+fn is_word(kind: &str) -> bool {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte);
+    !kind.is_empty() && kind.len() <= LONGEST_NAME && kind.bytes().all(is_plain)
+}
+
+/// The right of a stream's reader, which can end while the stream is open: by a log-out, a revoked token, a disabled
+/// account or a lower role.
+struct Right {
+    app: App,
+    headers: HeaderMap,
+    study: String,
+    role: Role,
+    /// When it has to be checked again.
+    expires: Instant,
+}
+
+impl Right {
+    /// Whether the reader may go on; the database is asked once in [`RECHECK`].
+    async fn holds(&mut self) -> bool {
+        if Instant::now() < self.expires {
+            return true;
+        }
+        self.expires = Instant::now() + RECHECK;
+        let reader = Researcher::of(&self.app, &self.headers).await;
+        reader.and_then(|reader| reader.needs_in(&self.study, self.role)).is_ok()
+    }
+}
+
+/// Sends lines for as long as the reader has the right to them; whether all were taken.
+async fn send_all(
+    sender: &mpsc::Sender<Result<Event, Infallible>>,
+    lines: Vec<Event>,
+    right: &mut Right,
+) -> bool {
+    for line in lines {
+        // A reader that takes nothing is not waited for beyond its right.
+        let place = loop {
+            if !right.holds().await {
+                return false;
+            }
+            match tokio::time::timeout_at(right.expires, sender.reserve()).await {
+                Ok(Ok(place)) => break place,
+                Ok(Err(_)) => return false,
+                Err(_) => {}
+            }
+        };
+        place.send(Ok(line));
+    }
+    true
 }
 
 /// A stream of one who may do so much, for as long as they may.
@@ -159,35 +219,36 @@ fn stream(
     let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
     let mut beats = app.pulse.listen();
     let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
+    let mut right =
+        Right { app: app.clone(), headers, study, role, expires: Instant::now() + RECHECK };
     tokio::spawn(async move {
         let _place = place;
         let mut last = None;
         loop {
-            let now = beats.borrow_and_update().get(&study).cloned().unwrap_or_default();
+            let now = beats.borrow_and_update().get(&right.study).cloned().unwrap_or_default();
             while last.as_ref() != Some(&now) {
+                if !right.holds().await {
+                    return;
+                }
                 // A database that does not answer is asked again at the next change.
-                let Ok(lines) = told.lines(&app, &study, &now).await else { break };
+                let Ok(lines) = told.lines(&app, &right.study, &now).await else { break };
                 if lines.is_empty() {
                     last = Some(now);
                     break;
                 }
-                for line in lines {
-                    if sender.send(Ok(line)).await.is_err() {
-                        return;
-                    }
+                if !send_all(&sender, lines, &mut right).await {
+                    return;
                 }
             }
             tokio::select! {
                 changed = beats.changed() => if changed.is_err() { break },
-                // Whoever has logged out meanwhile, or lost the account, sees no more.
-                () = tokio::time::sleep(RECHECK) => {
-                    let now = Researcher::of(&app, &headers).await;
-                    if now.and_then(|who| who.needs_in(&study, role)).is_err() {
-                        break;
-                    }
-                }
+                () = tokio::time::sleep_until(right.expires) => {}
                 () = app.pulse.stopped() => break,
                 () = sender.closed() => break,
+            }
+            // Asked after every turn: a busy study does not put the question off.
+            if !right.holds().await {
+                break;
             }
         }
     });
