@@ -33,7 +33,7 @@ test("panic: a solver's panic is in the server's log, without values", { skip: u
     }, [id, source]);
     assert.match(said, /^solver: /, "the clip is refused");
     const line = await logged(server, /a module panicked in a browser.*/);
-    for (const part of ['module="solver"', 'study="demo"', 'panic="a planted panic: \\"…\\""', 'place="web/panics/examples/panicking.rs:']) {
+    for (const part of ['module="solver"', 'study="demo"', 'panic="a planted panic: \\"…\\""', 'place="web/panicking/src/lib.rs:']) {
       assert.ok(line.includes(part), `${part} in ${line}`);
     }
     assert.ok(!server.log().includes("my-secret-answer"), server.log());

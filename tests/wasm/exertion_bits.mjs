@@ -1,16 +1,16 @@
 // Computes exertion's numbers with a browser's module in node and compares their bits with those that are
 // kept in the repository, which the native program computes too.
 //
-//   node tests/wasm/exertion_bits.mjs FOLDER_OF_EXERTION_BITS_JS FILE_OF_KEPT_BITS
+//   node tests/wasm/exertion_bits.mjs FOLDER_OF_BITS_JS FILE_OF_STORED_BITS
 import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const [folder, kept] = process.argv.slice(2).map((path) => resolve(path));
-const module = await import(pathToFileURL(join(folder, "exertion_bits.js")));
-await module.default({ module_or_path: readFileSync(join(folder, "exertion_bits_bg.wasm")) });
+const module = await import(pathToFileURL(join(folder, "bits.js")));
+await module.default({ module_or_path: readFileSync(join(folder, "bits_bg.wasm")) });
 
-const own = module.lines().split("\n");
+const own = module.exertion_lines().split("\n");
 const expected = readFileSync(kept, "utf8").split("\n");
 let failed = own.length === expected.length ? 0 : 1;
 for (const [row, line] of expected.entries()) {

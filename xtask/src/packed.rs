@@ -1,4 +1,4 @@
-//! The compressed forms of the pages, made once, when the pages are built: `mimique-pages` embeds them.
+//! The compressed forms of the pages, made once, when the pages are built: the program embeds them.
 //!
 //! `target/web-packed` holds `HASH.br` and `HASH.gz` for the content with that SHA-256. A file is empty if compression
 //! saves less than a twentieth. Browsers accept brotli only over TLS and from the same machine, gzip everywhere.

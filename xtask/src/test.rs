@@ -18,8 +18,8 @@ pub struct Args {
     no_browser: bool,
 }
 
-/// The crate that is nothing without a browser. The other two under `web/` have tests of their own.
-const WEB: [&str; 1] = ["mimique-web-stage"];
+/// The crate of the canvas, which is empty unless it is compiled for a browser.
+const CANVAS: &str = "mimique-web-stage";
 
 /// Runs everything; an error when a test failed (or was skipped under `MIMIQUE_NO_SKIP`).
 pub fn run(args: &Args) -> Result<()> {
@@ -30,16 +30,19 @@ pub fn run(args: &Args) -> Result<()> {
     tally.check("format", cargo().args(["fmt", "--all", "--check"]));
     // Linking a module of the pages occupies one core: everything else is checked and compiled alongside. When the pages are
     // finished, only what embeds them is compiled again.
-    let beside = std::thread::scope(|scope| {
-        let beside = scope.spawn(|| {
-            let mut beside = lints();
-            beside.check("compiling the tests", nextest().arg("--no-run"));
-            beside
+    let others = std::thread::scope(|scope| {
+        let others = scope.spawn(|| {
+            let mut others = lints();
+            for (name, packages) in SELECTIONS {
+                let compiling = format!("compiling the tests, {name}");
+                others.check(&compiling, nextest(packages).arg("--no-run"));
+            }
+            others
         });
         tally.done("pages", || web::all(true));
-        beside.join()
+        others.join()
     });
-    tally.add(beside.map_err(|_| anyhow!("lints and compilation have stopped"))?);
+    tally.add(others.map_err(|_| anyhow!("lints and compilation have stopped"))?);
     tally.done("size of the pages", budget::check);
     dependencies(&mut tally);
     native(&mut tally, python.as_deref())?;
@@ -53,10 +56,11 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Browser tests that hold the display's frames, a clip's sound or a press against a clock, and those that go through the
-/// longest studies: nothing runs beside them.
-const TIMED: [&str; 9] =
-    ["conduct", "keys", "mimicry", "pairs", "sound", "studio", "study", "together", "triggers"];
+/// Browser tests that compare the display's frames, a clip's sound or a press with a clock: they run alone.
+const TIMED: [&str; 5] = ["keys", "mimicry", "pairs", "sound", "triggers"];
+
+/// The longest of the other browser tests: they begin first, so that no worker is left with one of them at the end.
+const LONGEST: [&str; 4] = ["studio", "study", "together", "conduct"];
 
 /// Installs what tests need; the Python environment, where there can be one.
 fn needed() -> Result<Option<PathBuf>> {
@@ -84,28 +88,28 @@ fn needed() -> Result<Option<PathBuf>> {
 /// Clippy, natively and for the modules of the pages.
 fn lints() -> Tally {
     let mut tally = Tally::default();
-    let mut lint = cargo_with_pages();
-    lint.arg("clippy").args(locked()).args(["--release", "--workspace", "--all-targets"]);
-    exclude_web(&mut lint);
-    tally.check("clippy, native", lint.args(DENY));
-    // The canvas has a feature for each graphics back end; one call checks everything else along with one of them.
-    for (canvas, others) in [("webgpu", &MODULES[..]), ("webgl", &[])] {
+    for (name, packages) in SELECTIONS {
+        let mut lint = cargo_with_pages();
+        lint.arg("clippy").args(locked()).args(["--release", "--all-targets"]).args(packages);
+        tally.check(&format!("clippy, {name}"), lint.args(DENY));
+    }
+    // The native call has checked the other modules: only these two are written for browsers alone. The canvas has a
+    // feature for each graphics back end.
+    for (canvas, app) in [("webgpu", &["--package", "mimique-app"][..]), ("webgl", &[])] {
         let mut lint = cargo();
         lint.arg("clippy").args(locked()).args(["--release", "--target", "wasm32-unknown-unknown"]);
-        lint.args(packages(others)).args(packages(&WEB));
-        lint.args(["--no-default-features", "--features", &format!("mimique-web-stage/{canvas}")]);
+        lint.args(app).args(["--package", CANVAS, "--no-default-features"]);
+        lint.args(["--features", &format!("{CANVAS}/{canvas}")]);
         tally.check(&format!("clippy, wasm32, {canvas}"), lint.args(DENY));
     }
     tally
 }
 
-/// The modules of the pages but the canvas, for clippy.
-const MODULES: [&str; 5] = [
-    "mimique-app",
-    "mimique-web-solver",
-    "mimique-web-adaptive",
-    "mimique-web-report",
-    "mimique-web-studio",
+/// What is compiled natively, in two selections: together with the workspace, xtask's dependencies would be compiled once
+/// more, with the features that the workspace asks for.
+const SELECTIONS: [(&str, &[&str]); 2] = [
+    ("workspace", &["--workspace", "--exclude", CANVAS, "--exclude", "xtask"]),
+    ("xtask", &["--package", "xtask"]),
 ];
 
 /// Cargo with the folder of the pages: a command without it would rebuild what embeds them.
@@ -117,10 +121,6 @@ fn cargo_with_pages() -> Command {
 
 /// A warning fails.
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
-
-fn packages<'a>(names: &'a [&'static str]) -> impl Iterator<Item = &'static str> + use<'a> {
-    names.iter().flat_map(|name| ["--package", name])
-}
 
 /// Licences, sources and unwanted crates. Compiling cargo-deny takes longer than all of the tests, so that it
 /// is not installed here; advisories need its database from the network.
@@ -136,38 +136,40 @@ fn dependencies(tally: &mut Tally) {
     }
 }
 
-/// The test runner on the whole workspace, as the binary of the browser tests is compiled, too.
-fn nextest() -> Command {
+/// The test runner on a selection; the binary of the browser tests is compiled with the workspace.
+fn nextest(packages: &[&str]) -> Command {
     let mut tests = cargo_with_pages();
-    tests.args(["nextest", "run"]).args(locked()).args(["--release", "--workspace"]);
-    exclude_web(&mut tests);
+    tests.args(["nextest", "run"]).args(locked()).arg("--release").args(packages);
     tests
 }
 
 /// Unit, property, golden and HTTP tests, and the examples of the documentation.
 fn native(tally: &mut Tally, python: Option<&Path>) -> Result<()> {
-    let mut tests = nextest();
-    tests.arg("--no-fail-fast");
-    // Passed tests are shown too: one that skips says so there.
-    tests.args(["--success-output", "immediate", "--status-level", "slow", "--color", "never"]);
-    tests.env("MIMIQUE_DATA", data());
-    if let Some(python) = python {
-        tests.env("MIMIQUE_PYTHON", python);
+    for (name, packages) in SELECTIONS {
+        let mut tests = nextest(packages);
+        tests.arg("--no-fail-fast");
+        // Passed tests are shown too: one that skips says so there.
+        tests.args(["--success-output", "immediate", "--status-level", "slow"]);
+        tests.args(["--color", "never"]).env("MIMIQUE_DATA", data());
+        if let Some(python) = python {
+            tests.env("MIMIQUE_PYTHON", python);
+        }
+        tally.tests(&format!("unit, property, golden and http tests, {name}"), &mut tests)?;
     }
-    tally.tests("unit, property, golden and http tests", &mut tests)?;
     let mut doc_tests = cargo_with_pages();
-    doc_tests.arg("test").args(locked()).args(["--release", "--doc", "--workspace"]);
-    exclude_web(&mut doc_tests);
+    // xtask is no library and has none.
+    doc_tests.arg("test").args(locked()).args(["--release", "--doc"]).args(SELECTIONS[0].1);
     tally.check("doc tests", &mut doc_tests);
     Ok(())
 }
 
 /// The documentation of every public item, without a warning.
 fn documentation(tally: &mut Tally) {
-    let mut docs = cargo_with_pages();
-    docs.arg("doc").args(locked()).args(["--workspace", "--no-deps", "--release"]);
-    exclude_web(&mut docs);
-    tally.check("documentation", docs.env("RUSTDOCFLAGS", "-D warnings"));
+    for (name, packages) in SELECTIONS {
+        let mut docs = cargo_with_pages();
+        docs.arg("doc").args(locked()).args(["--no-deps", "--release"]).args(packages);
+        tally.check(&format!("documentation, {name}"), docs.env("RUSTDOCFLAGS", "-D warnings"));
+    }
 }
 
 /// Pages are used as a person uses them: by click, by keyboard, on both graphics back ends.
@@ -191,11 +193,13 @@ fn browser(tally: &mut Tally) -> Result<()> {
         .filter(|p| p.to_string_lossy().ends_with(".test.mjs"))
         .collect();
     files.sort();
-    let is_timed = |path: &PathBuf| {
+    let is_one_of = |path: &Path, names: &[&str]| {
         let name = path.file_name().map_or_else(Default::default, |name| name.to_string_lossy());
-        TIMED.contains(&name.trim_end_matches(".test.mjs"))
+        names.contains(&name.trim_end_matches(".test.mjs"))
     };
-    let (timed, others): (Vec<_>, Vec<_>) = files.into_iter().partition(is_timed);
+    let (timed, mut others): (Vec<_>, Vec<_>) =
+        files.into_iter().partition(|path| is_one_of(path, &TIMED));
+    others.sort_by_key(|path| !is_one_of(path, &LONGEST));
     // `run.mjs` is `node --test` with browsers and prepared stimuli that all files share.
     let mut run = |name: &str, workers: u32, files: Vec<PathBuf>| {
         let mut tests = Command::new("node");
@@ -212,12 +216,6 @@ fn browser(tally: &mut Tally) -> Result<()> {
 fn need(package: &Package) {
     if let Found::No(remedy) = package.ensure() {
         say(&format!("{} not found; the tests that need it will skip: {remedy}", package.name));
-    }
-}
-
-fn exclude_web(command: &mut Command) {
-    for name in WEB {
-        command.args(["--exclude", name]);
     }
 }
 

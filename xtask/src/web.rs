@@ -9,9 +9,8 @@
 //! | `studio` | `web/studio` | the studio's worker |
 //! | `report` | `web/report` | the report of a study, for the pages of a capsule |
 //! | `solver` | `web/solver` | the solver's worker |
-//! | `orders` | an example of `web/app` | stored orders, for a test; not a part of the pages |
-//! | `exertion_bits` | an example of `web/solver` | exertion's numbers, for a test; not a part of the pages |
-//! | `panicking` | an example of `web/panics` | a solver that panics, for a test; not a part of the pages |
+//! | `bits` | `web/bits` | orders and numbers of exertion, for a test; not a part of the pages |
+//! | `panicking` | `web/panicking` | a solver that panics, for a test; not a part of the pages |
 //!
 //! All of them are built with the profile `web`, whose packages have optimisation levels of their own (`Cargo.toml`), so
 //! that every dependency compiles once.
@@ -33,7 +32,7 @@ use crate::process::{cargo, locked, root, run as run_program, say, target};
 /// Options of `cargo xtask web`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Build only these modules (adaptive, app, exertion_bits, orders, panicking, report, stage_webgpu, stage_webgl, solver, studio);
+    /// Build only these modules (adaptive, app, bits, panicking, report, stage_webgpu, stage_webgl, solver, studio);
     /// static files always
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
@@ -46,19 +45,19 @@ struct Module {
     name: &'static str,
     package: &'static str,
     library: &'static str,
-    /// Whether it is an example: built as the page is, for a test, and gathered nowhere.
-    example: bool,
+    /// Whether only tests load it: it is built as the pages are, and not gathered with them.
+    is_for_tests: bool,
     features: Option<&'static str>,
     opt_level: &'static str,
 }
 
 /// The largest come first: they are made small while the others compile.
-const MODULES: [Module; 10] = [
+const MODULES: [Module; 9] = [
     Module {
         name: "studio",
         package: "mimique-web-studio",
         library: "mimique_web_studio",
-        example: false,
+        is_for_tests: false,
         features: None,
         opt_level: "-O3",
     },
@@ -66,7 +65,7 @@ const MODULES: [Module; 10] = [
         name: "report",
         package: "mimique-web-report",
         library: "mimique_web_report",
-        example: false,
+        is_for_tests: false,
         features: None,
         opt_level: "-O3",
     },
@@ -74,7 +73,7 @@ const MODULES: [Module; 10] = [
         name: "solver",
         package: "mimique-web-solver",
         library: "mimique_web_solver",
-        example: false,
+        is_for_tests: false,
         features: None,
         opt_level: "-O3",
     },
@@ -82,7 +81,7 @@ const MODULES: [Module; 10] = [
         name: "adaptive",
         package: "mimique-web-adaptive",
         library: "mimique_web_adaptive",
-        example: false,
+        is_for_tests: false,
         features: None,
         opt_level: "-O3",
     },
@@ -90,7 +89,7 @@ const MODULES: [Module; 10] = [
         name: "app",
         package: "mimique-app",
         library: "mimique_app",
-        example: false,
+        is_for_tests: false,
         features: None,
         opt_level: "-Oz",
     },
@@ -98,7 +97,7 @@ const MODULES: [Module; 10] = [
         name: "stage_webgl",
         package: "mimique-web-stage",
         library: "mimique_web_stage",
-        example: false,
+        is_for_tests: false,
         features: Some("webgl"),
         opt_level: "-Oz",
     },
@@ -106,31 +105,23 @@ const MODULES: [Module; 10] = [
         name: "stage_webgpu",
         package: "mimique-web-stage",
         library: "mimique_web_stage",
-        example: false,
+        is_for_tests: false,
         features: Some("webgpu"),
         opt_level: "-Oz",
     },
     Module {
-        name: "exertion_bits",
-        package: "mimique-web-solver",
-        library: "exertion_bits",
-        example: true,
+        name: "bits",
+        package: "mimique-web-bits",
+        library: "mimique_web_bits",
+        is_for_tests: true,
         features: None,
         opt_level: "-O3",
     },
     Module {
-        name: "orders",
-        package: "mimique-app",
-        library: "golden_orders",
-        example: true,
-        features: None,
-        opt_level: "-Oz",
-    },
-    Module {
         name: "panicking",
-        package: "mimique-web-panics",
-        library: "panicking",
-        example: true,
+        package: "mimique-web-panicking",
+        library: "mimique_web_panicking",
+        is_for_tests: true,
         features: None,
         opt_level: "-Oz",
     },
@@ -205,7 +196,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// Builds every module of the pages, and with `tests` those that only tests load.
 pub fn all(tests: bool) -> Result<()> {
-    build(|module| tests || !module.example, true)
+    build(|module| tests || !module.is_for_tests, true)
 }
 
 fn build(wanted: impl Fn(&Module) -> bool, optimise: bool) -> Result<()> {
@@ -249,10 +240,7 @@ impl Module {
 
     /// Where the compiler writes the module.
     fn raw(&self) -> PathBuf {
-        target()
-            .join("wasm32-unknown-unknown/web")
-            .join(if self.example { "examples" } else { "" })
-            .join(format!("{}.wasm", self.library))
+        target().join("wasm32-unknown-unknown/web").join(format!("{}.wasm", self.library))
     }
 
     /// Compiles and links the module, to where [`Module::finish`] finds it.
@@ -260,11 +248,9 @@ impl Module {
         say(&format!("building {}", self.name));
         let mut command = cargo();
         command.arg("rustc").args(locked()).args(["--target", "wasm32-unknown-unknown"]);
-        match self.example {
-            true => command.args(["--example", self.library]),
-            // cargo leaves link-time optimisation out where an rlib is built along.
-            false => command.args(["--lib", "--crate-type", "cdylib"]),
-        };
+        // cargo leaves link-time optimisation out where an rlib is built along, and an example would have all dependencies
+        // compiled once more, for both.
+        command.args(["--lib", "--crate-type", "cdylib"]);
         command.args(["--package", self.package, "--profile", "web"]);
         if let Some(features) = self.features {
             command.args(["--no-default-features", "--features", features]);
@@ -285,7 +271,7 @@ impl Module {
     /// Gives the linked module its script and, unless only tests load it, makes it small.
     fn finish(&self, optimiser: Option<&Path>) -> Result<()> {
         let raw = self.unfinished();
-        let optimiser = optimiser.filter(|_| !self.example);
+        let optimiser = optimiser.filter(|_| !self.is_for_tests);
         let out = self.out();
         let stamp = out.join("stamp");
         let mark = self.mark(&raw, optimiser)?;
@@ -339,7 +325,7 @@ fn wasm_bindgen_cli_support_version() -> String {
 /// files untouched, so that a build that changed nothing embeds nothing anew; then prints the sizes.
 fn gather(esbuild: Option<&Path>) -> Result<()> {
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
-    for module in MODULES.iter().filter(|module| !module.example) {
+    for module in MODULES.iter().filter(|module| !module.is_for_tests) {
         for suffix in [".js", "_bg.wasm"] {
             let name = format!("{}{suffix}", module.name);
             if let Ok(bytes) = fs::read(module.out().join(&name)) {
@@ -468,10 +454,9 @@ mod tests {
         // other features of four small packages.
         let may_differ =
             ["mimique-solver ", "bitflags ", "hashbrown ", "indexmap ", "num-integer "];
-        let modules = || MODULES.iter().filter(|module| !module.example);
-        let studio = packages(modules().find(|module| module.name == "studio").unwrap());
+        let studio = packages(MODULES.iter().find(|module| module.name == "studio").unwrap());
         assert!(studio.len() > 100, "{studio:?}");
-        for module in modules() {
+        for module in &MODULES {
             for (package, features) in packages(module) {
                 let Some(of_the_studio) = studio.get(&package) else { continue };
                 assert!(

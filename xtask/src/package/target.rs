@@ -143,7 +143,7 @@ impl Target {
         target().join(self.triple).join("release").join(self.program())
     }
 
-    /// Name of the archive and of the folder in it: what `cargo binstall` is told in `crates/mimique/Cargo.toml`.
+    /// Name of the archive and of the folder in it: as `crates/mimique/Cargo.toml` gives it to `cargo binstall`.
     pub fn archive_stem(&self) -> String {
         format!("{NAME}-{VERSION}-{}", self.triple)
     }

@@ -1,6 +1,6 @@
 //! The bits of the whole way are kept, and the module that a browser loads gives the same.
 //!
-//! The second needs node and the module built by `cargo xtask web --only exertion_bits` (in
+//! The second needs node and the module built by `cargo xtask web --only bits` (in
 //! `target/web-modules`).
 
 use std::path::PathBuf;
@@ -33,9 +33,9 @@ fn bits_are_those_that_are_kept() {
 fn the_browser_s_module_gives_the_same_bits() {
     let target = std::env::var_os("CARGO_TARGET_DIR")
         .map_or_else(|| repository().join("target"), PathBuf::from);
-    let module = target.join("web-modules/exertion_bits");
+    let module = target.join("web-modules/bits");
     let node = Command::new("node").arg("--version").output().is_ok_and(|o| o.status.success());
-    let missing = match (node, module.join("exertion_bits_bg.wasm").is_file()) {
+    let missing = match (node, module.join("bits_bg.wasm").is_file()) {
         (true, true) => None,
         (false, _) => Some("node is not installed".to_owned()),
         (true, false) => Some(format!("no module in {}; run cargo xtask web", module.display())),

@@ -16,7 +16,7 @@ use crate::participant::first_page::first_page;
 /// A file that is part of the program, with its compressed forms.
 #[derive(Debug, Clone, Copy)]
 pub struct EmbeddedFile {
-    /// Path below the folder of the pages.
+    /// Path below the folder of the pages, such as `style/style.css`.
     pub name: &'static str,
     /// The content, unless there is a gzip form that it can be unpacked from.
     pub raw: Option<&'static [u8]>,

@@ -125,8 +125,8 @@ async fn refuse_nul(request: Request, next: Next) -> Response {
     next.run(request).await
 }
 
-/// Links and the origins of forms are compared with the host: two of them would be told apart by no reader, and a
-/// proxy could read another one than this server does. Over a connection of HTTP/1.1 there has to be one.
+/// Links and the origins of forms are compared with the host. A request with two is refused: a proxy could read one of
+/// them and this server the other. Over a connection of HTTP/1.1 there has to be one (RFC 9112, section 3.2).
 async fn one_host(request: Request, next: Next) -> Response {
     let hosts = request.headers().get_all(header::HOST).iter().count();
     let is_over_connection = request.extensions().get::<Peer>().is_some();

@@ -33,8 +33,8 @@ async fn report(
 ) -> Result<Json<()>, Error> {
     let PanicReport { module, backend, message, place, study } = report;
     let caller = caller_of(&app, &headers, peer.map(|Extension(peer)| peer));
-    let told = (&module, &backend, &message, &place, &study);
-    match app.panic_reports.verdict(caller, &told, Instant::now()) {
+    let report = (&module, &backend, &message, &place, &study);
+    match app.panic_reports.verdict(caller, &report, Instant::now()) {
         Verdict::TooMany => return Err(Error::RateLimited),
         Verdict::Counted => {}
         Verdict::Write { repeats } => {

@@ -258,8 +258,8 @@ pub async fn links_begin_with_the_address_that_people_type(server: &TestServer) 
     assert_eq!(app.base_address(listening), "https://faces.example");
 }
 
-/// Two hosts in one request are none that links and origins could be compared with (RFC 9112).
-pub async fn two_hosts_are_none(server: &TestServer) {
+/// A request with two hosts is refused: which of them links and origins are compared with would be open (RFC 9112).
+pub async fn two_hosts_are_refused(server: &TestServer) {
     let hosts = async |hosts: &[&str]| {
         let mut request = Request::get("/healthz");
         for host in hosts {

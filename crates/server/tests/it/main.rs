@@ -1,8 +1,8 @@
 //! The integration tests of `mimique-server`, in one binary.
 //!
 //! The HTTP interface on SQLite and on PostgreSQL: one suite, both databases. On SQLite every topic is a
-//! test of its own; on PostgreSQL all topics run in one test on a private cluster, each in a fresh
-//! database.
+//! test of its own; on PostgreSQL four tests have a private cluster each and share the topics, each in a
+//! fresh database.
 
 mod accounts;
 mod active_pairs;
@@ -39,7 +39,10 @@ mod withdrawal;
 
 use client::TestServer;
 
-/// Declares the topics: a test each on SQLite, one test of all on PostgreSQL.
+/// Tests that share the topics on PostgreSQL, so that they run at the same time.
+const SHARES: usize = 4;
+
+/// Declares the topics: a test each on SQLite, and `on_postgres`, which runs those of one share.
 macro_rules! topics {
     ($($module:ident :: $topic:ident),* $(,)?) => {
         mod sqlite {
@@ -55,20 +58,21 @@ macro_rules! topics {
             )*
         }
 
-        #[test]
-        fn postgres_passes_every_topic_too() {
-            let Some(cluster) = postgres::Cluster::start("postgres_passes_every_topic_too") else {
-                return;
-            };
+        /// Runs every topic whose place in the list, counted round and round, is that of the share.
+        fn on_postgres(test: &str, share: usize) {
+            let Some(cluster) = postgres::Cluster::start(test) else { return };
             client::block_on(async {
+                let mut places = (0..SHARES).cycle();
                 $(
-                    let url = cluster.fresh_database(stringify!($topic)).await;
-                    eprintln!("topic {}", stringify!($topic));
-                    // Each on the heap: all of them together are more than a stack holds.
-                    Box::pin(async {
-                        $module::$topic(&TestServer::open(&url).await).await;
-                    })
-                    .await;
+                    if places.next() == Some(share) {
+                        let url = cluster.fresh_database(stringify!($topic)).await;
+                        eprintln!("topic {}", stringify!($topic));
+                        // Each on the heap: all of them together are more than a stack holds.
+                        Box::pin(async {
+                            $module::$topic(&TestServer::open(&url).await).await;
+                        })
+                        .await;
+                    }
                 )*
             });
         }
@@ -106,7 +110,7 @@ topics! {
     defences::panics_of_pages_are_logged,
     defences::reports_of_panics_are_few,
     defences::a_token_is_known_in_any_case,
-    defences::two_hosts_are_none,
+    defences::two_hosts_are_refused,
     defences::links_begin_with_the_address_that_people_type,
     hostile_texts::no_text_of_a_participant_breaks_a_consumer,
     enrolment::who_only_looks_or_is_turned_away_holds_no_place_and_uses_no_identifier,
@@ -204,4 +208,24 @@ topics! {
     withdrawal::a_right_code_is_redeemed_after_wrong_ones,
     withdrawal::a_researcher_redeems_a_code_that_was_sent,
     withdrawal::a_withdrawal_of_the_page_is_in_the_log,
+}
+
+#[test]
+fn postgres_passes_the_first_share_of_the_topics() {
+    on_postgres("postgres_passes_the_first_share_of_the_topics", 0);
+}
+
+#[test]
+fn postgres_passes_the_second_share_of_the_topics() {
+    on_postgres("postgres_passes_the_second_share_of_the_topics", 1);
+}
+
+#[test]
+fn postgres_passes_the_third_share_of_the_topics() {
+    on_postgres("postgres_passes_the_third_share_of_the_topics", 2);
+}
+
+#[test]
+fn postgres_passes_the_last_share_of_the_topics() {
+    on_postgres("postgres_passes_the_last_share_of_the_topics", SHARES - 1);
 }

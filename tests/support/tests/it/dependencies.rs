@@ -1,4 +1,4 @@
-//! What `deny.toml` says of licences, sources and unwanted crates, held against every dependency of
+//! What `deny.toml` says of licences, sources and unwanted crates, checked for every dependency of
 //! this machine's build and of the wasm modules. `cargo deny check` says the same of every platform,
 //! and of advisories, where cargo-deny is installed. And which of our own crates must not be built of which.
 

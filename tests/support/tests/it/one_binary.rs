@@ -8,7 +8,7 @@ use std::process::Command;
 use mimique_test_support::repository;
 use serde_json::Value;
 
-/// The modules that lie beside a `main.rs`, as files or as folders with a `mod.rs`.
+/// The modules in the folder of a `main.rs`, as files or as folders with a `mod.rs`.
 fn modules_in(folder: &Path) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for entry in std::fs::read_dir(folder).expect("the folder of the tests") {

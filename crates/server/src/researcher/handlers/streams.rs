@@ -39,7 +39,8 @@ pub(crate) async fn live(
     headers: HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
-    stream(app, headers, &who, study, Role::Viewer, Told::Changes { told: NEVER.to_owned() })
+    may_read(&app, &who, &study, Role::Viewer)?;
+    stream(app, headers, &who, study, Role::Viewer, Feed::Changes { last: NEVER.to_owned() })
 }
 
 /// Where a stream of events begins.
@@ -68,8 +69,7 @@ pub(crate) async fn events(
     headers: HeaderMap,
     who: Researcher,
 ) -> Result<Response, Error> {
-    who.needs_in(&study, Role::Analyst)?;
-    app.study(&study)?;
+    may_read(&app, &who, &study, Role::Analyst)?;
     // Looked up before the answer: what is stored after it belongs to the stream, however late its first look is.
     let mut sent = BTreeMap::new();
     if query.from == From::Now {
@@ -78,16 +78,22 @@ pub(crate) async fn events(
             sent.insert(state.key, Sent { before, sequences: BTreeSet::new() });
         }
     }
-    let told = Told::Events { sent };
-    stream(app, headers, &who, study, Role::Analyst, told)
+    stream(app, headers, &who, study, Role::Analyst, Feed::Events { sent })
 }
 
-/// What a stream tells.
-enum Told {
+/// An error unless the study exists and the reader may see so much of it.
+fn may_read(app: &App, who: &Researcher, study: &str, role: Role) -> Result<(), Error> {
+    who.needs_in(study, role)?;
+    app.study(study)?;
+    Ok(())
+}
+
+/// What a stream sends.
+enum Feed {
     /// That something has changed.
     Changes {
-        /// The beat that was told last.
-        told: String,
+        /// The beat that was sent last.
+        last: String,
     },
     /// The events themselves.
     Events {
@@ -104,7 +110,7 @@ struct Sent {
     sequences: BTreeSet<u64>,
 }
 
-impl Told {
+impl Feed {
     /// What is to be sent at a beat, a session at a time: nothing once all is sent.
     async fn lines(
         &mut self,
@@ -113,9 +119,9 @@ impl Told {
         beat: &str,
     ) -> Result<Vec<Event>, StorageError> {
         let sent = match self {
-            Self::Changes { told } if told == beat => return Ok(Vec::new()),
-            Self::Changes { told } => {
-                beat.clone_into(told);
+            Self::Changes { last } if last == beat => return Ok(Vec::new()),
+            Self::Changes { last } => {
+                beat.clone_into(last);
                 return Ok(vec![Event::default().event("changed").data(beat)]);
             }
             Self::Events { sent } => sent,
@@ -205,17 +211,15 @@ async fn send_all(
     true
 }
 
-/// A stream of one who may do so much, for as long as they may.
+/// A stream for as long as its reader has the role.
 fn stream(
     app: App,
     headers: HeaderMap,
     who: &Researcher,
     study: String,
     role: Role,
-    mut told: Told,
+    mut feed: Feed,
 ) -> Result<Response, Error> {
-    who.needs_in(&study, role)?;
-    app.study(&study)?;
     let place = app.pulse.place(who.account.key).ok_or(Error::TooManyStreams)?;
     let mut beats = app.pulse.listen();
     let (sender, receiver) = mpsc::channel::<Result<Event, Infallible>>(4);
@@ -231,7 +235,7 @@ fn stream(
                     return;
                 }
                 // A database that does not answer is asked again at the next change.
-                let Ok(lines) = told.lines(&app, &right.study, &now).await else { break };
+                let Ok(lines) = feed.lines(&app, &right.study, &now).await else { break };
                 if lines.is_empty() {
                     last = Some(now);
                     break;

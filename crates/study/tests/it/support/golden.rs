@@ -1,6 +1,6 @@
-//! The orders that are kept in `tests/golden`: how each is drawn, natively (`tests/it/golden_orders.rs`) and
-//! in the browser's module (`web/app/examples/golden_orders.rs`, run by
-//! `tests/browser/order_bits.test.mjs`). Needs `study_text` and `small` beside it.
+//! The orders that are stored in `tests/golden`: how each is drawn, natively (`tests/it/golden_orders.rs`) and
+//! in the browser's module (`web/bits/src/orders.rs`, run by
+//! `tests/browser/order_bits.test.mjs`). Needs the modules `study_text` and `small`.
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,5 @@
 //! The orders of `crates/study/tests/golden`, drawn by the module of a browser:
-//! `tests/browser/order_bits.test.mjs` compares them with the files. A test, not a part of the page.
+//! `tests/browser/order_bits.test.mjs` compares them with the files.
 
 #[path = "../../../crates/study/tests/it/support/golden.rs"]
 mod golden;
@@ -22,14 +22,14 @@ fn study_text(name: &str) -> String {
     .to_owned()
 }
 
-/// The names of the kept orders.
+/// The names of the stored orders.
 #[wasm_bindgen]
-pub fn names() -> Vec<String> {
+pub fn order_names() -> Vec<String> {
     golden::NAMES.map(str::to_owned).into()
 }
 
 /// The lines of one of them.
 #[wasm_bindgen]
-pub fn lines(name: &str) -> String {
+pub fn order_lines(name: &str) -> String {
     golden::lines(name)
 }

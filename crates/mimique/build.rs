@@ -1,4 +1,4 @@
-//! Writes the table of `include_bytes!` that `src/lib.rs` reads: every file of `target/web-dist` (or of the folder in
+//! Writes the table of `include_bytes!` that `src/main.rs` includes: every file of `target/web-dist` (or of the folder in
 //! `MIMIQUE_WEB_DIST`) with the compressed forms that `cargo xtask web` put into the folder `web-packed` next to it.
 //!
 //! If the folder is absent or empty, the table is empty, and `mimique serve` reports how to build the pages.

@@ -1,5 +1,5 @@
 //! A solver that panics over a value: `tests/browser/panics.test.mjs` puts it in the place of the solver's
-//! module and reads the server's log. A test, not a part of the pages.
+//! module and reads the server's log.
 
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
