@@ -27,9 +27,10 @@ function begin() {
 
 let ended = false;
 
-/** The last page stands once every answer has arrived: now the run ends, with the outcome as its message. */
+/** The last page is shown once every answer has arrived: now the run ends, with the outcome as its message. Whoever has
+    declined may still go back, so that the run goes on. */
 function end() {
-  const outcome = app.querySelector("main[data-outcome]")?.dataset.outcome;
+  const outcome = app.querySelector("main[data-outcome]:not([data-view=declined])")?.dataset.outcome;
   if (!outcome || ended) return;
   ended = true;
   jatos.endStudyWithoutRedirect(outcome === "completed", outcome);

@@ -15,8 +15,8 @@ import { small, stimuli, text } from "./lib/small_study.mjs";
 
 const noBrowser = skip(!executable && "Chromium not found");
 
-/** A page with the study in a frame, that keeps what it is told. */
-async function survey(address) {
+/** A page with the study in a frame, that stores what it hears. */
+async function survey(address, host = "127.0.0.1") {
   const page = () => `<!doctype html><html lang="en"><title>Survey</title>
     <style>body { font: 16px sans-serif; max-width: 860px; margin: 16px auto; background: #eef1f6 } label { margin-right: 24px }</style>
     <h1>Survey of a laboratory</h1>
@@ -36,7 +36,7 @@ async function survey(address) {
     server.closeAllConnections();
     return new Promise((done) => server.close(done));
   };
-  return { origin: `http://127.0.0.1:${server.address().port}`, show: (other) => (address = other), close };
+  return { origin: `http://${host}:${server.address().port}`, show: (other) => (address = other), close };
 }
 
 test("embedding: a study in a frame of a page that is named, and of no other", { skip: noBrowser }, async () => {
@@ -98,5 +98,45 @@ test("embedding: a study in a frame of a page that is named, and of no other", {
   } finally {
     await browser.close();
     await Promise.all([named.close(), other.close(), server.stop()]);
+  }
+});
+
+test("embedding: a page of another site hears how it ended, whatever the end", { skip: noBrowser }, async () => {
+  const questions = [{ id: "age", type: "number", prompt: text("Age?"), minimum: 0, maximum: 120 }];
+  const plain = { demographics: { title: text("You"), questions }, sequence: { order: "fixed", components: [] } };
+  const folder = mkdtempSync(join(tmpdir(), "mimique-"));
+  const files = [
+    ["open", plain],
+    ["closed", { ...plain, recruitment: { closes: "2020-01-01T00:00:00Z" } }],
+  ].map(([id, parts]) => {
+    const file = join(folder, `${id}.json`);
+    writeFileSync(file, JSON.stringify(small(id, parts)));
+    return file;
+  });
+  const page = await survey("about:blank", "localhost");
+  const server = await serve(files, { more: ["--allow-embedding", page.origin] });
+  const browser = await open("undrawn");
+  const outcomes = () => browser.page.evaluate(() => globalThis.heard.filter(({ event }) => event === "ended").map(({ outcome }) => outcome));
+  const hears = (...wanted) => until(`it hears ${wanted}`, async () => (await outcomes()).join() === wanted.join(), 60_000);
+  try {
+    page.show(`${server.url}/s/open/`);
+    await browser.page.goto(page.origin);
+    const frame = browser.page.frameLocator("#faces");
+    const press = (action) => frame.locator(`[data-action=${action}]`).click();
+    await press("decline");
+    await hears("declined");
+    // Whoever has pressed the wrong button goes back, and the last outcome counts.
+    await press("back-to-consent");
+    await frame.locator("main[data-view=consent] button.primary:not([disabled])").click();
+    await frame.locator("main[data-view=questions]").waitFor();
+    await press("withdraw");
+    await press("withdraw-confirm");
+    await hears("declined", "withdrawn");
+    page.show(`${server.url}/s/closed/`);
+    await browser.page.reload();
+    await hears("study_closed");
+  } finally {
+    await browser.close();
+    await Promise.all([page.close(), server.stop()]);
   }
 });

@@ -8,7 +8,7 @@ const foreign = [403, 200, 404, 511];
 
 /**
  * `{url, counts, calm(), rule(fate), close()}`; `seed` decides every fate, and without one there is no
- * storm; `calm` ends it. `fate(method, path)` of `rule` goes before: "silent" is never answered, "foreign"
+ * storm; `calm` ends it. `fate(method, path, body)` of `rule` goes before: "silent" is never answered, "foreign"
  * by somebody else ("foreign 403" by that status), "damaged" with other bytes; nothing else is changed.
  */
 export async function badProxy(target, seed) {
@@ -45,7 +45,7 @@ export async function badProxy(target, seed) {
       const body = Buffer.concat(parts);
       const drop = () => answer.destroy();
       try {
-        const told = rule(method, url);
+        const told = rule(method, url, body);
         if (told === "silent") return void counts.silent++;
         if (told?.startsWith("foreign")) {
           const status = Number(told.slice(8)) || foreign[counts.foreign % foreign.length];

@@ -14,6 +14,8 @@ pub enum Failure {
     Unreachable(String),
     /// The server understood and refuses: trying again changes nothing.
     Refused(Refusal),
+    /// Something on the way, such as a proxy, forwards no body of this size: less at a time may pass.
+    TooLarge,
 }
 
 /// What an answer means that is not what was asked for: its status, and its body where that is a
@@ -23,8 +25,15 @@ pub fn failure(status: u16, refusal: Option<Refusal>) -> Failure {
     let later = status >= 500 || matches!(status, 408 | 425 | 429);
     match refusal {
         Some(refusal) if !later && status >= 400 => Failure::Refused(refusal),
+        None if status == 413 => Failure::TooLarge,
         _ => Failure::Unreachable(["HTTP ", &status.to_string()].concat()),
     }
+}
+
+/// A refusal that this page finds itself.
+pub fn refusal(code: &str, message: &str, remedy: &str) -> Refusal {
+    let [code, message, remedy] = [code, message, remedy].map(str::to_owned);
+    Refusal { code, message, remedy, sequences: Vec::new() }
 }
 
 /// Whether the server says that it has the session no more: only then is it forgotten here.
@@ -58,6 +67,14 @@ mod tests {
         for status in [408, 425, 429, 500, 503] {
             assert!(matches!(judged(status, body), Failure::Unreachable(_)), "{status}");
         }
+    }
+
+    #[test]
+    fn a_proxys_limit_of_a_body_is_no_fault_of_the_network() {
+        let proxy = "<title>413 Request Entity Too Large</title>";
+        assert_eq!(judged(413, proxy), Failure::TooLarge);
+        let own = r#"{"code":"too-large","message":"a body","remedy":"shorten it"}"#;
+        assert!(matches!(judged(413, own), Failure::Refused(_)));
     }
 
     #[test]

@@ -15,6 +15,8 @@ pub struct Outbox {
     waiting: Vec<Event>,
     /// Number of events that the server has without a gap.
     stored: u64,
+    /// How often the number of events in a request was halved.
+    halved: u32,
 }
 
 /// Most events in one request: well under the server's limit of a body.
@@ -23,7 +25,7 @@ pub const BATCH: usize = 50;
 impl Outbox {
     /// An outbox of a session of which the server has `stored` events.
     pub fn new(stored: u64) -> Self {
-        Self { waiting: Vec::new(), stored }
+        Self { stored, ..Self::default() }
     }
 
     /// An event to be sent. One that the server has already is not taken again.
@@ -35,7 +37,13 @@ impl Outbox {
 
     /// The next events to send, the oldest first; empty when there is nothing to do.
     pub fn batch(&self) -> Vec<Event> {
-        self.waiting.iter().take(BATCH).cloned().collect()
+        self.waiting.iter().take((BATCH >> self.halved).max(1)).cloned().collect()
+    }
+
+    /// From now on requests have half as many events. False where `sent` was one event: no request is smaller.
+    pub fn halve(&mut self, sent: &[Event]) -> bool {
+        self.halved = (self.halved + 1).min(BATCH.ilog2());
+        sent.len() > 1
     }
 
     /// The server has answered the sending of `sent`. Returns the sequences that need no keeping
@@ -169,6 +177,27 @@ mod tests {
                 prop_assert_eq!(stored, &event(*sequence));
             }
         }
+    }
+
+    #[test]
+    fn a_limit_on_the_way_lets_smaller_requests_pass() {
+        let mut outbox = Outbox::new(0);
+        (0..120).for_each(|n| outbox.push(event(n)));
+        let mut server = Server::default();
+        // A proxy that forwards four events at a time.
+        while !outbox.batch().is_empty() {
+            let batch = outbox.batch();
+            if batch.len() > 4 {
+                assert!(outbox.halve(&batch));
+                continue;
+            }
+            let answer = server.append(&batch);
+            outbox.acknowledge(&batch, &answer);
+        }
+        assert_eq!(server.stored.len(), 120);
+        assert!(!outbox.halve(&[event(120)]), "one event cannot be divided");
+        outbox.push(event(120));
+        assert_eq!(outbox.batch().len(), 1);
     }
 
     #[test]

@@ -6,13 +6,13 @@
 use std::cell::RefCell;
 
 use mimique_session::wire::{
-    Acknowledged, Event, Receipt, Refusal, Resume, SessionStarted, StartSession, Withdrawn,
+    Acknowledged, Event, Receipt, Resume, SessionStarted, StartSession, Withdrawn,
 };
 use mimique_session::{Record, SessionFile, SiteFile, Standing};
 use mimique_study::{Draw, Multilingual as _, StudyProjection, drawn_condition};
 use serde_json::Value;
 
-use crate::answer::Failure;
+use crate::answer::{Failure, refusal};
 use crate::browser::document;
 use crate::browser::http::Body;
 use crate::event_store::{EventStore, Identity, Store};
@@ -86,7 +86,7 @@ impl Site {
         let conditions =
             study.sequence.conditions_for(body.condition.as_deref()).map_err(|unknown| {
                 let (message, remedy) = study.words(&body.language).unknown_condition(&unknown);
-                refusal("unknown-condition", message, remedy)
+                Failure::Refused(refusal("unknown-condition", &message, &remedy))
             })?;
         let nonce = &body.nonce;
         let number = nonce.get(..12).and_then(|digits| u64::from_str_radix(digits, 16).ok());
@@ -279,9 +279,5 @@ fn filled(address: &str, code: Option<&str>) -> String {
 }
 
 fn refused(code: &str) -> Failure {
-    refusal(code, code.to_owned(), String::new())
-}
-
-fn refusal(code: &str, message: String, remedy: String) -> Failure {
-    Failure::Refused(Refusal { code: code.to_owned(), message, remedy, sequences: Vec::new() })
+    Failure::Refused(refusal(code, code, ""))
 }

@@ -13,7 +13,7 @@ use mimique_study::{Multilingual as _, StudyProjection};
 use serde_json::Value;
 
 use crate::address::Address;
-use crate::answer::{Failure, is_gone};
+use crate::answer::{Failure, is_gone, refusal};
 use crate::browser::{clock, document, host, random};
 use crate::client::{about, client};
 use crate::engine::{Beginning, Engine};
@@ -277,6 +277,7 @@ where
         match request().await {
             Ok(answer) => return Ok(answer),
             Err(Failure::Refused(refusal)) => return Err(Trouble::Refused(refusal)),
+            Err(Failure::TooLarge) => return Err(Trouble::Refused(refusal("too-large", "", ""))),
             Err(Failure::Unreachable(reason)) => {
                 failures += 1;
                 if failures >= TRIES || clock::now() - begun > LONGEST_MS {

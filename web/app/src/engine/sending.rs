@@ -9,7 +9,7 @@ use mimique_session::wire::Event;
 use wasm_bindgen_futures::spawn_local;
 
 use super::{Connection, Engine};
-use crate::answer::{Failure, is_gone};
+use crate::answer::{Failure, is_gone, refusal};
 use crate::browser::{clock, random};
 use crate::event_store::Identity;
 use crate::outbox::{Outbox, back_off};
@@ -91,11 +91,12 @@ impl Engine {
                         }
                         engine.wait(failures).await;
                     }
+                    Err(Failure::TooLarge) if engine.outbox.borrow_mut().halve(&batch) => {}
                     // Whoever withdraws has nothing left to send.
                     Err(Failure::Refused(_)) if engine.is_withdrawing() => break,
-                    Err(Failure::Refused(refusal)) => {
+                    Err(failure) => {
                         // The events stay in IndexedDB; a reload or a retry sends them again.
-                        engine.troubled(Failure::Refused(refusal));
+                        engine.troubled(failure);
                         break;
                     }
                 }
@@ -113,6 +114,7 @@ impl Engine {
         self.connection_is(|connection| match failure {
             Failure::Unreachable(_) => connection.offline = true,
             Failure::Refused(refusal) => connection.refused = Some(refusal),
+            Failure::TooLarge => connection.refused = Some(refusal("too-large", "", "")),
         });
     }
 

@@ -7,6 +7,10 @@ use crate::act::Act;
 use crate::dom::{Element, el, words};
 use crate::start::Trouble;
 
+/// Refusals with which a participant's part has ended: a page around the study goes on. The others may pass.
+const TURNED_AWAY: [&str; 5] =
+    ["already-took-part", "no-identifier", "study-closed", "study-full", "study-not-open"];
+
 /// What is wrong, and a button to try again.
 pub fn trouble(trouble: &Trouble, fixed: &Words) -> Element {
     let (title, detail) = match trouble {
@@ -25,5 +29,11 @@ pub fn trouble(trouble: &Trouble, fixed: &Words) -> Element {
         .with(heading(title))
         .with(words("p", "", &detail))
         .with(el("div", "actions").with(retry));
-    main("page", "failure").key("failure").with(card)
+    let outcome = match trouble {
+        Trouble::Refused(refusal) if TURNED_AWAY.contains(&refusal.code.as_str()) => {
+            Some(refusal.code.replace('-', "_"))
+        }
+        _ => None,
+    };
+    main("page", "failure").maybe("data-outcome", outcome.as_deref()).key("failure").with(card)
 }

@@ -1,5 +1,6 @@
 //! Pages that only tell something.
 
+use mimique_session::Standing;
 use mimique_study::RepeatPrevention;
 
 use super::{button, heading, main};
@@ -19,8 +20,11 @@ pub fn receipt_pending(title: &str, text: &str, stored: u64, total: u64) -> Elem
 
 /// The participant took everything back.
 pub fn withdrawn(title: &str, text: &str, confirmed: bool) -> Element {
+    let outcome = confirmed.then(|| Standing::Withdrawn.export_word());
     let confirmed = if confirmed { "true" } else { "false" };
-    told("withdrawn", title, text, None).set("data-confirmed", confirmed)
+    told("withdrawn", title, text, None)
+        .set("data-confirmed", confirmed)
+        .maybe("data-outcome", outcome)
 }
 
 fn told(view: &str, title: &str, text: &str, more: Option<Element>) -> Element {
@@ -35,7 +39,7 @@ pub fn declined(engine: &Engine, title: &str, text: &str) -> Element {
         .with(heading(title))
         .with(words("p", "", text))
         .with(el("div", "actions").with(back.on("click", |_| Act::BeginAgain)));
-    main("page", "declined").with(card)
+    main("page", "declined").set("data-outcome", Standing::Declined.export_word()).with(card)
 }
 
 /// Where the study lets one browser take part again: a session of its own for the next person.
