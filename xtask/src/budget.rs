@@ -39,8 +39,9 @@ const BUDGETS: [Budget; 4] = [
         // drawn for one trial, and which levels a judgement of differences shows. 2 are where the measured face of a
         // participant passes: its page, its log, and what asks the scripts (studies that measure faces alone load them). 1 is
         // what static hosts are posted as it comes, and the runs of JATOS. 2 are the solver's features that one compilation for
-        // all modules brings along (`web/unified`); brotli at its best quality saves 35 at the same time.
-        kilobytes: 383.0,
+        // all modules brings along (`web/unified`); brotli at its best quality saves 35 at the same time. 1 is every outcome
+        // that a page around the study hears of, and smaller requests for proxies that limit them.
+        kilobytes: 384.0,
     },
     Budget {
         name: "the solver and the scripts of the stage",
