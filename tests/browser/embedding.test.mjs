@@ -39,19 +39,26 @@ async function survey(address, host = "127.0.0.1") {
   return { origin: `http://${host}:${server.address().port}`, show: (other) => (address = other), close };
 }
 
-test("embedding: a study in a frame of a page that is named, and of no other", { skip: noBrowser }, async () => {
-  const study = small("framed", {
-    demographics: { title: text("You"), questions: [{ id: "age", type: "number", prompt: text("Age?"), minimum: 0, maximum: 120 }] },
-    stimuli: stimuli({ head: { builtin: { seed: 1 } } }, { lsts: { method: "lsts" } }, [["head", "lsts"]]),
-    questions: [{ id: "believable", type: "likert", prompt: text("Believable?"), numItems: 5, leftLabel: text("no"), rightLabel: text("yes") }],
-    components: { faces: { type: "trials", questions: ["believable"] } },
-    sequence: { order: "fixed", components: ["faces"] },
-  });
-  const file = join(mkdtempSync(join(tmpdir(), "mimique-")), "framed.json");
-  writeFileSync(file, JSON.stringify(study));
+/** The parts of a study of one clip. */
+const faces = {
+  demographics: { title: text("You"), questions: [{ id: "age", type: "number", prompt: text("Age?"), minimum: 0, maximum: 120 }] },
+  stimuli: stimuli({ head: { builtin: { seed: 1 } } }, { lsts: { method: "lsts" } }, [["head", "lsts"]]),
+  questions: [{ id: "believable", type: "likert", prompt: text("Believable?"), numItems: 5, leftLabel: text("no"), rightLabel: text("yes") }],
+  components: { faces: { type: "trials", questions: ["believable"] } },
+  sequence: { order: "fixed", components: ["faces"] },
+};
+
+/** A study file of these parts. */
+function file(id, parts) {
+  const path = join(mkdtempSync(join(tmpdir(), "mimique-")), `${id}.json`);
+  writeFileSync(path, JSON.stringify(small(id, parts)));
+  return path;
+}
+
+test("embedding: a study in a frame of a page that is named, and of no other", { skip: noBrowser, timeout: 240_000 }, async () => {
   // The survey's origin is known before the server starts; what it shows is told by its address.
   const named = await survey("about:blank");
-  const server = await serve([file], { more: ["--allow-embedding", named.origin] });
+  const server = await serve([file("framed", faces)], { more: ["--allow-embedding", named.origin] });
   const other = await survey(`${server.url}/s/framed/`);
   const browser = await open("webgl2", { viewport: { width: 900, height: 900 } });
   const { page } = browser;
@@ -101,21 +108,13 @@ test("embedding: a study in a frame of a page that is named, and of no other", {
   }
 });
 
-test("embedding: a page of another site hears how it ended, whatever the end", { skip: noBrowser }, async () => {
-  const questions = [{ id: "age", type: "number", prompt: text("Age?"), minimum: 0, maximum: 120 }];
-  const plain = { demographics: { title: text("You"), questions }, sequence: { order: "fixed", components: [] } };
-  const folder = mkdtempSync(join(tmpdir(), "mimique-"));
+test("embedding: a page of another site hears how it ended, whatever the end", { skip: noBrowser, timeout: 240_000 }, async () => {
   const files = [
-    ["open", plain],
-    ["closed", { ...plain, recruitment: { closes: "2020-01-01T00:00:00Z" } }],
-  ].map(([id, parts]) => {
-    const file = join(folder, `${id}.json`);
-    writeFileSync(file, JSON.stringify(small(id, parts)));
-    return file;
-  });
+    file("open", faces),
+    file("closed", { ...faces, recruitment: { closes: "2020-01-01T00:00:00Z" } }),
+  ];
   const page = await survey("about:blank", "localhost");
-  const server = await serve(files, { more: ["--allow-embedding", page.origin] });
-  const browser = await open("undrawn");
+  const [server, browser] = await Promise.all([serve(files, { more: ["--allow-embedding", page.origin] }), open("undrawn")]);
   const outcomes = () => browser.page.evaluate(() => globalThis.heard.filter(({ event }) => event === "ended").map(({ outcome }) => outcome));
   const hears = (...wanted) => until(`it hears ${wanted}`, async () => (await outcomes()).join() === wanted.join(), 60_000);
   try {

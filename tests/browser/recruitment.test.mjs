@@ -104,7 +104,7 @@ test("recruitment: Prolific, every way out with its code", { skip: unable, timeo
     for (const [name, person] of Object.entries(people)) {
       const end = await takePart(`${server.url}/s/prolific/?backend=webgl2&PROLIFIC_PID=${name}%2B1&STUDY_ID=s&SESSION_ID=x`, person);
       if (name === "declined") {
-        assert.deepEqual(end, { view: "declined", outcome: null, code: null, back: null, again: 0 });
+        assert.deepEqual(end, { view: "declined", outcome: "declined", code: null, back: null, again: 0 });
         continue;
       }
       const code = prolific[wanted[name]];
@@ -140,7 +140,7 @@ test("recruitment: SONA, credit for those who completed alone", { skip: unable, 
     assert.deepEqual(await takePart(came, people.completed), { view: "end", outcome: "completed", code: null, back, again: 0 });
     for (const outcome of ["screened_out", "failed_checks"])
       assert.deepEqual(await takePart(came, people[outcome]), { view: "end", outcome, code: null, back: null, again: 0 });
-    assert.deepEqual(await takePart(came, people.declined), { view: "declined", outcome: null, code: null, back: null, again: 0 });
+    assert.deepEqual(await takePart(came, people.declined), { view: "declined", outcome: "declined", code: null, back: null, again: 0 });
   } finally {
     await server.stop();
   }

@@ -18,7 +18,8 @@ const env = {
   MIMIQUE_BROWSERS: JSON.stringify(Object.fromEntries(servers.map(([backend, server]) => [backend, server.wsEndpoint()]))),
   MIMIQUE_TEST_PACKS: packs,
 };
-const tests = spawn(process.execPath, ["--test", ...process.argv.slice(2)], { env, stdio: "inherit" });
+// A test that fails before it has stopped its servers must not keep everything waiting.
+const tests = spawn(process.execPath, ["--test", "--test-force-exit", ...process.argv.slice(2)], { env, stdio: "inherit" });
 const [code, signal] = await new Promise((done) => tests.on("exit", (...ended) => done(ended)));
 await Promise.all(servers.map(([, server]) => server.close()));
 rmSync(packs, { recursive: true, force: true });

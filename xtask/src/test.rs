@@ -56,11 +56,13 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Browser tests that compare the display's frames, a clip's sound or a press with a clock: they run alone.
-const TIMED: [&str; 5] = ["keys", "mimicry", "pairs", "sound", "triggers"];
+/// Browser tests that compare the display's frames, a clip's sound or a press with a clock, or how many frames were drawn in
+/// a time: they run alone.
+const TIMED: [&str; 7] =
+    ["keys", "mimicry", "pairs", "sound", "stage_element", "studio", "triggers"];
 
 /// The longest of the other browser tests: they begin first, so that no worker is left with one of them at the end.
-const LONGEST: [&str; 4] = ["studio", "study", "together", "conduct"];
+const LONGEST: [&str; 3] = ["study", "together", "conduct"];
 
 /// Installs what tests need; the Python environment, where there can be one.
 fn needed() -> Result<Option<PathBuf>> {
