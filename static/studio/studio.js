@@ -23,7 +23,7 @@ import { fill, language, numeral, say } from "./texts.js";
 import { Timeline } from "./timeline.js";
 import { TrainingFiles } from "./training.js";
 import { problemWords } from "./words-engine.js";
-import { sayProblems } from "./worker-calls.js";
+import { Forgotten, sayProblems } from "./worker-calls.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -41,6 +41,8 @@ let segments = [];
 let training = null;
 
 function report(error) {
+  // The face that the call was about is gone: there is nothing to correct.
+  if (error instanceof Forgotten) return;
   $("problem").textContent = String(error?.message ?? error);
   $("problem").hidden = false;
 }

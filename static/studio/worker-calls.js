@@ -14,6 +14,12 @@ const JSON_CALLS = new Set([
   "layoutState", "exertion", "exertionFile", "exertionModel", "studyLibrary", "study",
 ]);
 
+// Calls after which the worker has forgotten what was solved: for the avatar or take before, or for a face that was removed.
+const FORGETTING = new Set(["avatarFile", "builtInAvatar", "takeFile", "builtInTake", "forget"]);
+
+/// Why a call about a solved face failed: the face was forgotten after the call was made.
+export class Forgotten extends Error {}
+
 // How problems are said: in English, until a page says that it has words of its own.
 let words = {
   problem: ({ place, text }) => (place === null ? text : `${place}: ${text}`),
@@ -29,13 +35,15 @@ export function sayProblems(others) {
 let worker = null;
 let next = 1;
 const jobs = new Map();
+// How often the worker has forgotten solved faces.
+let forgotten = 0;
 
 /// Calls a method of the worker's `Studio`.
 export function callWorker(call, ...args) {
   worker ??= start();
   const id = next++;
   return new Promise((resolve, reject) => {
-    jobs.set(id, { call, resolve, reject });
+    jobs.set(id, { call, forgotten, resolve, reject });
     worker.postMessage({ id, call, args });
   });
 }
@@ -47,10 +55,13 @@ function start() {
     const job = jobs.get(data.id);
     jobs.delete(data.id);
     if (data.error === undefined) {
+      if (FORGETTING.has(job.call)) forgotten += 1;
       job.resolve(JSON_CALLS.has(job.call) ? JSON.parse(data.result) : data.result);
     } else {
-      const reason = data.problem ? words.problem(JSON.parse(data.problem)) : data.error;
-      job.reject(new Error(data.panicked ? words.broke(reason) : reason));
+      const problem = data.problem ? JSON.parse(data.problem) : null;
+      const reason = problem ? words.problem(problem) : data.error;
+      const isForgotten = problem?.is.code === "nothing-solved" && job.forgotten < forgotten;
+      job.reject(isForgotten ? new Forgotten(reason) : new Error(data.panicked ? words.broke(reason) : reason));
     }
   };
   started.onerror = (event) => {

@@ -101,7 +101,9 @@ for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
       }
       const [drift, longest] = [Number(rows[0].beside_drift_ms), Number(rows[0].frame_longest_ms)];
       assert.ok(drift <= longest, `two drawn clips ${drift} ms apart, with frames of at most ${longest} ms`);
-      assert.ok(Number(rows[1].beside_drift_ms) < 40, `drift of ${rows[1].beside_drift_ms} ms: less than a frame of the video`);
+      // The face is drawn with the display's frames, the video comes with its own: 40 ms each.
+      const [besideVideo, display] = [Number(rows[1].beside_drift_ms), Number(rows[1].frame_longest_ms)];
+      assert.ok(besideVideo < Math.max(40, display), `face and video ${besideVideo} ms apart, with frames of at most ${display} ms`);
     } finally {
       await browser.close();
       await server?.stop();
