@@ -48,7 +48,9 @@ for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
     const { page } = browser;
     let server;
     try {
-      writeFileSync(join(folder, "joy2.webm"), await recordVideo(page));
+      const video = await recordVideo(page);
+      assert.ok(video.durationMs > 1000 && video.durationMs < 2500, `a video of ${video.durationMs} ms`);
+      writeFileSync(join(folder, "joy2.webm"), video.bytes);
       writeFileSync(join(folder, "pairs.json"), JSON.stringify(study("joy2.webm")));
       server = await serve([join(folder, "pairs.json")]);
       await page.goto(`${server.url}/s/pairs/?backend=${backend}`);
@@ -90,8 +92,9 @@ for (const [backend, width] of [["webgl2", 1280], ["webgpu", 412]]) {
       const rows = parse(mimique(["export", "--database", server.database, "--format", "csv"])).filter((row) => row.trial_type === "trial");
       const inTurn = rows.pop();
       assert.deepEqual([inTurn.item_left, inTurn.item_right].sort(), ["actor", "person"]);
-      // The drawn face lasts 4 s, the video about 2.
-      assert.ok(Number(inTurn.rt) > 5_800, `both were played whole before the answer: ${inTurn.rt} ms`);
+      // The drawn face lasts 4 s.
+      const played = 4000 + video.durationMs;
+      assert.ok(Number(inTurn.rt) > played - 200, `both were played whole before the answer: ${played} of ${inTurn.rt} ms`);
       assert.deepEqual(rows.map((row) => [row.beside, row.beside_side]), [["joy2.real.actor", "right"], ["joy2.real.person", "left"]]);
       for (const row of rows) {
         assert.ok(Number(row.frames) >= 2, `${row.frames} frames`);

@@ -96,12 +96,14 @@ export async function go(page, hands) {
   }
 }
 
-/** Waits for a phase of the trial on screen. */
+/** Waits for a phase of the trial on screen; on a busy machine a short clip may have been played between two looks. */
 export async function phase(page, wanted, timeout = 90_000) {
+  const phases = [wanted].flat();
+  if (phases.includes("playing")) phases.push("answering");
   await page.waitForFunction(
     (phases) => phases.includes(document.querySelector("main[data-view]")?.dataset.phase),
-    [wanted].flat(),
-    { timeout },
+    phases,
+    { timeout, polling: 20 },
   );
 }
 

@@ -1,8 +1,11 @@
 // A video for tests, made by the browser itself.
 
-/** A video of two seconds, a frame every 30 ms: a disc that crosses the picture. */
+/**
+ * A video of about two seconds, a frame every 30 ms: a disc that crosses the picture. `{bytes, durationMs}`: a busy machine
+ * records less of it.
+ */
 export async function recordVideo(page) {
-  const base64 = await page.evaluate(async () => {
+  const { base64, durationMs } = await page.evaluate(async () => {
     const canvas = Object.assign(document.createElement("canvas"), { width: 240, height: 240 });
     const brush = canvas.getContext("2d");
     // A frame is taken when one is drawn, at times that do not add up the lateness of the timers.
@@ -24,8 +27,14 @@ export async function recordVideo(page) {
       await new Promise((done) => setTimeout(done, next - (performance.now() - began)));
     }
     await new Promise((done) => ((recorder.onstop = done), recorder.stop()));
-    const bytes = new Uint8Array(await new Blob(pieces).arrayBuffer());
-    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+    const blob = new Blob(pieces);
+    const bytes = new Uint8Array(await blob.arrayBuffer());
+    const video = Object.assign(document.createElement("video"), { src: URL.createObjectURL(blob) });
+    await new Promise((done) => (video.onloadeddata = done));
+    // What a browser records does not say how long it is: its end does.
+    await new Promise((done) => ((video.onseeked = done), (video.currentTime = 1e6)));
+    const durationMs = video.currentTime * 1000;
+    return { base64: btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")), durationMs };
   });
-  return Buffer.from(base64, "base64");
+  return { bytes: Buffer.from(base64, "base64"), durationMs };
 }
