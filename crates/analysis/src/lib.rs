@@ -58,3 +58,4 @@ pub use simulate::{
 };
 pub use trials::error::{ExportError, MimicryError, StimuliError};
 pub use trials::reason::Reason;
+pub use trials::versions::{ServedVersion, StudyVersions};

@@ -98,3 +98,8 @@ impl Naming<'_> {
         format!("{} − {}", self.level(factor, a), self.level(factor, b))
     }
 }
+
+/// A number of people with its noun: "1 person", "2 people".
+pub(crate) fn people_counted(language: Language, people: usize) -> String {
+    language.counted(people, ["person", "people"], ["personne", "personnes"])
+}

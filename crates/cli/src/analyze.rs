@@ -6,10 +6,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use mimique_analysis::{ExportError, MeasuredFaces, ReportOptions, analyze_with};
+use mimique_analysis::{
+    ExportError, MeasuredFaces, ReportOptions, ServedVersion, StudyVersions, analyze_with,
+};
 use mimique_locale::{Language, counted, counted_as};
 use mimique_stats::Table;
-use mimique_study::Study;
+use mimique_study::{Study, config_hash};
 
 use crate::report_folder;
 
@@ -35,6 +37,10 @@ pub struct Args {
     /// leads to that clip there
     #[arg(long, value_name = "URL", value_parser = preview_address)]
     preview_url: Option<String>,
+    /// Folder with the study files of all versions that were served [default: the folder materials next to the folder of
+    /// the export, as in the form Psych-DS]
+    #[arg(long, value_name = "DIR")]
+    versions: Option<PathBuf>,
     /// Folder for the report; an earlier report in it is replaced
     #[arg(long)]
     out: PathBuf,
@@ -47,6 +53,44 @@ fn read_table(path: &Path) -> anyhow::Result<Table> {
     let bytes = std::fs::read(path)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))?;
     Ok(Table::parse(bytes)?)
+}
+
+/// The study files of the versions that were served.
+fn served_versions(args: &Args) -> anyhow::Result<Vec<ServedVersion>> {
+    let next_to_export = || Some(args.export.parent()?.parent()?.join("materials"));
+    let folder = match &args.versions {
+        Some(folder) => folder.clone(),
+        None => match next_to_export().filter(|folder| folder.is_dir()) {
+            Some(folder) => folder,
+            None => return Ok(Vec::new()),
+        },
+    };
+    let unread = |error: std::io::Error| {
+        anyhow::anyhow!("cannot be read ({error}); check the path")
+            .context(folder.display().to_string())
+    };
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(&folder).map_err(unread)? {
+        let path = entry.map_err(unread)?.path();
+        // Other files of the folder are no study files.
+        let is_version = path.extension().is_some_and(|extension| extension == "json")
+            && (args.versions.is_some()
+                || path
+                    .file_stem()
+                    .is_some_and(|name| name.to_string_lossy().contains("_version-")));
+        paths.extend(is_version.then_some(path));
+    }
+    paths.sort();
+    let read = |path: &PathBuf| {
+        let place = || path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
+            .with_context(place)?;
+        let file = mimique_study::parse(&text).with_context(place)?;
+        let study = Study::from_value(&file).with_context(place)?;
+        Ok(ServedVersion { config_hash: config_hash(&file), study })
+    };
+    paths.iter().map(read).collect()
 }
 
 /// A language that reports are written in.
@@ -71,7 +115,10 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let text = std::fs::read_to_string(&args.study)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
         .with_context(|| place(&args.study))?;
-    let study = Study::from_text(&text).with_context(|| place(&args.study))?;
+    let file = mimique_study::parse(&text).with_context(|| place(&args.study))?;
+    let study = Study::from_value(&file).with_context(|| place(&args.study))?;
+    let hash = config_hash(&file);
+    let served = served_versions(&args)?;
     let table = read_table(&args.export).with_context(|| place(&args.export))?;
     let stimuli = match &args.stimuli {
         Some(path) => Some(read_table(path).with_context(|| place(path))?),
@@ -83,7 +130,8 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let faces = tracks.as_ref().zip(courses.as_ref());
     let faces = faces.map(|(tracks, courses)| MeasuredFaces { tracks, courses });
     let preview = args.preview_url.as_deref();
-    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview };
+    let versions = StudyVersions { config_hash: Some(&hash), served: &served };
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions };
     let report = analyze_with(&table, &study, args.language, options).map_err(|error| {
         let file = match &error {
             ExportError::Stimuli(_) => args.stimuli.as_ref(),

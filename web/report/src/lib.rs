@@ -53,7 +53,8 @@ pub fn analyze(
         text => Some(Table::parse(text)?),
     };
     let preview = (!preview.is_empty()).then_some(preview);
-    let options = ReportOptions { stimuli: stimuli.as_ref(), faces: None, preview };
+    let stimuli = stimuli.as_ref();
+    let options = ReportOptions { stimuli, preview, ..ReportOptions::default() };
     let language = Language::from_code(language)
         .ok_or_else(|| JsError::new(&format!("{language}: reports are written in en or fr")))?;
     let report = analyze_with(&table, &study, language, options)?;

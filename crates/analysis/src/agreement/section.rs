@@ -6,6 +6,7 @@ use mimique_stats::{
 };
 
 use super::{Agreement, ScaleConsistency, agreement, consistencies};
+use crate::naming::people_counted;
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::measure::Measure;
@@ -155,8 +156,8 @@ impl Writer<'_> {
             ),
         };
         language.pick(
-            format!("of one person’s ratings {single} of the variance is between clips (ICC(2,1)), of the mean of {} people {mean} (ICC(2,k)).{dropped}", icc.raters),
-            format!("pour les notes d’une personne, {single} de la variance est entre extraits (ICC(2,1)), pour la moyenne de {} personnes {mean} (ICC(2,k)).{dropped}", icc.raters),
+            format!("of one person’s ratings {single} of the variance is between clips (ICC(2,1)), of the mean of {} {mean} (ICC(2,k)).{dropped}", people_counted(language, icc.raters)),
+            format!("pour les notes d’une personne, {single} de la variance est entre extraits (ICC(2,1)), pour la moyenne de {} {mean} (ICC(2,k)).{dropped}", people_counted(language, icc.raters)),
         )
     }
 
@@ -226,8 +227,14 @@ impl Writer<'_> {
         let alpha = self.interval(found.alpha, Some(found.interval_95_feldt));
         let (k, n) = (found.k, found.n);
         let mut text = language.pick(
-            format!("{name}: Cronbach’s alpha of {k} questions is {alpha}, {n} people."),
-            format!("{name} : l’alpha de Cronbach de {k} questions est {alpha}, {n} personnes."),
+            format!(
+                "{name}: Cronbach’s alpha of {k} questions is {alpha}, {}.",
+                people_counted(language, n)
+            ),
+            format!(
+                "{name} : l’alpha de Cronbach de {k} questions est {alpha}, {}.",
+                people_counted(language, n)
+            ),
         );
         if found.dropped > 0 {
             let dropped = found.dropped;

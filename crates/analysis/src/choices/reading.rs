@@ -6,6 +6,7 @@ use mimique_stats::{Outcome, WorthContrast, WorthEstimates};
 use super::tested::ChoiceTests;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::naming::Naming;
+use crate::naming::people_counted;
 
 /// The level of a test.
 const LEVEL: f64 = 0.05;
@@ -123,13 +124,13 @@ fn overall(naming: &Naming<'_>, factor: &str, label: &str, line: &TestLine) -> S
     let n = line.row.n;
     if line.p_that_counts() < LEVEL {
         return language.pick(
-            format!("“{label}”: the levels of {what} are not chosen equally often: {numbers}, {n} people ({how})."),
-            format!("« {label} » : les niveaux du facteur {what} ne sont pas choisis aussi souvent : {numbers}, {n} personnes ({how})."),
+            format!("“{label}”: the levels of {what} are not chosen equally often: {numbers}, {} ({how}).", people_counted(language, n)),
+            format!("« {label} » : les niveaux du facteur {what} ne sont pas choisis aussi souvent : {numbers}, {} ({how}).", people_counted(language, n)),
         );
     }
     language.pick(
-        format!("“{label}”: that the levels of {what} are not chosen equally often was not shown: {numbers}, {n} people ({how}); that is no proof that they are."),
-        format!("« {label} » : que les niveaux du facteur {what} ne soient pas choisis aussi souvent n’a pas été montré : {numbers}, {n} personnes ({how}) ; cela ne prouve pas qu’ils le soient."),
+        format!("“{label}”: that the levels of {what} are not chosen equally often was not shown: {numbers}, {} ({how}); that is no proof that they are.", people_counted(language, n)),
+        format!("« {label} » : que les niveaux du facteur {what} ne soient pas choisis aussi souvent n’a pas été montré : {numbers}, {} ({how}) ; cela ne prouve pas qu’ils le soient.", people_counted(language, n)),
     )
 }
 

@@ -6,6 +6,7 @@ use mimique_stats::{CategoryImages, GroupImage, UnitCourse};
 use super::figure::{ImageWords, face, image};
 use super::played::{DrawnHead, PlayedWords};
 use super::{BlockImages, FoundImages, LEVEL, PERMUTATIONS, images, is_present};
+use crate::naming::people_counted;
 use crate::report::section::Writer;
 
 impl Writer<'_> {
@@ -43,8 +44,8 @@ impl Writer<'_> {
         let (people, trials) = (images.participants, images.n);
         let (draws, seed) = (images.permutations, images.seed);
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("Dynamic reverse correlation (Yu, Garrod and Schyns 2012): {trials} trials of {people} people showed action units at random. An image tells which units at which times are more active in trials answered with its category than in all others. Each person’s answers were dealt anew over that person’s trials, {draws} times (seed {seed}); p is corrected over all units and times of an image (largest |z|), not over categories. A small p says that somebody’s answers depend on the unit; the column of people says how many do so visibly by themselves."),
-            format!("Corrélation inverse dynamique (Yu, Garrod et Schyns 2012) : {trials} essais de {people} personnes ont montré des unités d’action au hasard. Une image dit quelles unités, à quels moments, sont plus actives dans les essais de sa catégorie que dans tous les autres. Les réponses de chaque personne ont été redistribuées sur ses essais, {draws} fois (graine {seed}) ; p est corrigé sur toutes les unités et tous les moments d’une image (plus grand |z|), non sur les catégories. Un petit p dit que les réponses de quelqu’un dépendent de l’unité ; la colonne des personnes dit chez combien cela se voit séparément."),
+            format!("Dynamic reverse correlation (Yu, Garrod and Schyns 2012): {trials} trials of {} showed action units at random. An image tells which units at which times are more active in trials answered with its category than in all others. Each person’s answers were dealt anew over that person’s trials, {draws} times (seed {seed}); p is corrected over all units and times of an image (largest |z|), not over categories. A small p says that somebody’s answers depend on the unit; the column of people says how many do so visibly by themselves.", people_counted(language, people)),
+            format!("Corrélation inverse dynamique (Yu, Garrod et Schyns 2012) : {trials} essais de {} ont montré des unités d’action au hasard. Une image dit quelles unités, à quels moments, sont plus actives dans les essais de sa catégorie que dans tous les autres. Les réponses de chaque personne ont été redistribuées sur ses essais, {draws} fois (graine {seed}) ; p est corrigé sur toutes les unités et tous les moments d’une image (plus grand |z|), non sur les catégories. Un petit p dit que les réponses de quelqu’un dépendent de l’unité ; la colonne des personnes dit chez combien cela se voit séparément.", people_counted(language, people)),
         )));
         if found.not_replayed > 0 {
             let count = found.not_replayed;
@@ -79,8 +80,8 @@ impl Writer<'_> {
             seen.join(", ")
         };
         self.blocks.push(Block::Reading(language.pick(
-            format!("{name} ({answers} answers, {people} people): more often answered where the face shows {units}."),
-            format!("{name} ({answers} réponses, {people} personnes) : plus souvent répondu quand le visage montre {units}."),
+            format!("{name} ({answers} answers, {}): more often answered where the face shows {units}.", people_counted(language, people)),
+            format!("{name} ({answers} réponses, {}) : plus souvent répondu quand le visage montre {units}.", people_counted(language, people)),
         )));
         self.image_figure(found, &name, category, &group);
         self.unit_table(found, &name, category, &group);

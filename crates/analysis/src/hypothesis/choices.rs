@@ -51,9 +51,11 @@ pub(super) fn of_choices(
         recommended: read.people,
         other_clips: None,
         equivalence: None,
+        matching: None,
         trials_without_level: 0,
         people_by_condition: Labelled::default(),
         p_holm_over_hypotheses: None,
+        p_difference_holm_over_hypotheses: None,
         reading: read.reading,
     }
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::hypothesis::person_level::{self, PersonLevel};
 use crate::hypothesis::trial_level::{self, TrialLevel};
 use crate::trials::export::Export;
+use crate::trials::matching::Matching;
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// A measure against a factor.
@@ -18,17 +19,21 @@ pub(crate) struct Comparison {
     pub levels: Vec<String>,
     /// Trials without a value of the factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
-    /// Trials a level.
+    /// Compared trials of each level.
     pub descriptions: Labelled<Outcome<Description>>,
     /// Mean over people of their means, a level.
     pub person_means: Labelled<Option<f64>>,
     pub as_in_the_thesis: TrialLevel,
     pub recommended: PersonLevel,
+    /// Which answers are compared within people, and how many remain.
+    pub matching: Matching,
 }
 
 /// Compares the levels of a within-person factor.
 pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Comparison {
-    let blocks = measure.person_means(export, factor);
+    let matching = measure.matching(export, factor);
+    let blocks = measure.person_means(export, factor, &matching);
+    let (matched, matched_factor) = measure.at(factor, &matching.rows());
     let mut tests = vec![trial_level::overall(measure, factor)];
     if factor.levels.len() == 2 && measure.kind != MeasureKind::Recognition {
         tests.push(trial_level::wilcoxon(export, measure, factor));
@@ -41,7 +46,7 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Com
         factor: factor.name.clone(),
         levels: factor.levels.clone(),
         trials_without_level: without_level(factor),
-        descriptions: describe_levels(measure, factor),
+        descriptions: describe_levels(&matched, &matched_factor),
         person_means: Labelled::zip(
             &factor.levels,
             (0..k).map(|j| {
@@ -49,7 +54,8 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Com
             }),
         ),
         as_in_the_thesis: TrialLevel::new(tests),
-        recommended: person_level::within(export, measure, factor),
+        recommended: person_level::within_matched(export, measure, factor, &matching),
+        matching,
     }
 }
 

@@ -7,6 +7,7 @@ use mimique_study::{Hypothesis, Study};
 use serde::Serialize;
 
 use crate::naming::Naming;
+use crate::naming::people_counted;
 use crate::trials::export::Export;
 use crate::trials::measure::{Measure, MeasureKind};
 
@@ -73,8 +74,8 @@ pub(crate) fn words(
     let told = conditions.iter().filter_map(|(name, own)| {
         let (people, mean) = (own.people, value(own.mean?));
         Some(language.pick(
-            format!("{name} {mean} ({people} people)"),
-            format!("{name} {mean} ({people} personnes)"),
+            format!("{name} {mean} ({})", people_counted(language, people)),
+            format!("{name} {mean} ({})", people_counted(language, people)),
         ))
     });
     let told: Vec<String> = told.collect();

@@ -73,8 +73,8 @@ pub(crate) struct Effect<'r> {
 /// What a hypothesis comes to.
 pub(crate) fn decision(result: &HypothesisResult) -> Decision {
     let Some(p) = result.p_holm_over_hypotheses.or(result.p) else { return Decision::NotTested };
-    if let Some(found) = &result.equivalence {
-        let p_difference = found.decides.p_difference.unwrap_or(1.0);
+    if result.equivalence.is_some() {
+        let p_difference = p_difference(result).unwrap_or(1.0);
         return Decision::Equivalence(EquivalenceVerdict::of(p, p_difference, LEVEL));
     }
     let sought = match result.test {
@@ -83,6 +83,37 @@ pub(crate) fn decision(result: &HypothesisResult) -> Decision {
         _ => Sought::Difference,
     };
     if p < LEVEL { Decision::Shown(sought) } else { Decision::NotShown(sought) }
+}
+
+/// p of any difference of a hypothesis of equivalence, corrected where several hypotheses are tested.
+fn p_difference(result: &HypothesisResult) -> Option<f64> {
+    let uncorrected = result.equivalence.as_ref().and_then(|found| found.decides.p_difference);
+    result.p_difference_holm_over_hypotheses.or(uncorrected)
+}
+
+/// What a p next to a decision is a p of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Supports {
+    /// The only test of the hypothesis.
+    TheDecision,
+    /// That levels are equivalent.
+    Equivalence,
+    /// That levels differ.
+    Difference,
+}
+
+/// The p values on which a decision rests, after the correction over all hypotheses: of "equivalent" that of equivalence,
+/// of "different" that of the difference, of a small difference and of no decision both.
+pub(crate) fn deciding_p_values(result: &HypothesisResult) -> Vec<(Supports, f64)> {
+    let Some(p) = result.p_holm_over_hypotheses.or(result.p) else { return Vec::new() };
+    let equivalence = Some((Supports::Equivalence, p));
+    let difference = p_difference(result).map(|p| (Supports::Difference, p));
+    match decision(result) {
+        Decision::Equivalence(EquivalenceVerdict::Equivalent) => equivalence.into_iter().collect(),
+        Decision::Equivalence(EquivalenceVerdict::Different) => difference.into_iter().collect(),
+        Decision::Equivalence(_) => equivalence.into_iter().chain(difference).collect(),
+        _ => vec![(Supports::TheDecision, p)],
+    }
 }
 
 /// The differences that a row has room for: those of few pairs, by the test that decides.

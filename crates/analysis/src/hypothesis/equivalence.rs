@@ -123,11 +123,13 @@ fn within(
     factor: &Factor,
     options: &EquivalenceOptions,
 ) -> (Parts, usize) {
-    let blocks = measure.person_means(export, factor);
+    let matching = measure.matching(export, factor);
+    let blocks = measure.person_means(export, factor, &matching);
     let differences = blocks.differences(0, 1);
     let call = |test: &'static str| {
         bounds(
             Call::new(Design::EquivalenceOfPeople, test)
+                .list(&matching.by)
                 .text(&measure.id)
                 .text(&factor.name)
                 .list(&factor.levels),

@@ -6,6 +6,7 @@ pub(crate) mod comparison;
 pub(crate) mod conditions;
 pub(crate) mod decision;
 pub(crate) mod equivalence;
+pub(crate) mod family;
 pub(crate) mod not_tested;
 pub(crate) mod other_clips;
 pub(crate) mod person_level;
@@ -33,6 +34,7 @@ use crate::hypothesis::undefined::TestOutcome;
 use crate::naming::Naming;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
+use crate::trials::matching::Matching;
 use crate::trials::measure::{Measure, MeasureKind, as_numbers};
 
 /// A hypothesis and what came out.
@@ -53,6 +55,9 @@ pub(crate) struct HypothesisResult {
     /// Whether the difference is smaller than the smallest that matters, where that is what is tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equivalence: Option<Equivalence>,
+    /// Which answers are compared, where the first factor is one of the clips.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matching: Option<Matching>,
     /// Trials without a value of a factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
     /// The people of each condition compared, where the assigned condition is a factor.
@@ -63,6 +68,9 @@ pub(crate) struct HypothesisResult {
     pub p: Option<f64>,
     /// After Holm's correction over the study's hypotheses.
     pub p_holm_over_hypotheses: Option<f64>,
+    /// p of any difference after the same correction, of a hypothesis of equivalence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub p_difference_holm_over_hypotheses: Option<f64>,
     pub reading: String,
 }
 
@@ -122,6 +130,12 @@ pub(crate) fn test_hypothesis(
             format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
         );
     }
+    let matching = measure.as_ref().and_then(|measure| matching_of(export, hypothesis, measure));
+    if let Some(words) = matching.as_ref().and_then(|matching| reading::unmatched(naming, matching))
+    {
+        reading.push(' ');
+        reading += &words;
+    }
     let other_clips =
         measure.as_ref().and_then(|measure| of_clips(export, hypothesis, measure, clips));
     if let Some(found) = &other_clips {
@@ -147,11 +161,13 @@ pub(crate) fn test_hypothesis(
         kind,
         measure: measure.map_or_else(|| hypothesis.response.clone(), |measure| measure.id),
         factors: hypothesis.factors.clone(),
+        matching,
         trials_without_level,
         people_by_condition,
         as_in_the_thesis: TrialLevel::new(trials),
         p: decided,
         p_holm_over_hypotheses: None,
+        p_difference_holm_over_hypotheses: None,
         recommended: people,
         other_clips,
         equivalence,
@@ -189,6 +205,15 @@ fn of_clips(
         return None;
     }
     other_clips::tested(export, measure, &factor, hypothesis.generalise.is_some(), tests)
+}
+
+/// Which answers are compared by the first factor that is one of the clips.
+fn matching_of(export: &Export, hypothesis: &Hypothesis, measure: &Measure) -> Option<Matching> {
+    let mut names = hypothesis.factors.iter().enumerate();
+    let (place, name) = names.find(|(_, name)| export.factors.contains(name))?;
+    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
+    let factor = measure.factor(export, name, if place == 0 { &levels } else { &[] });
+    (factor.levels.len() > 1).then(|| measure.matching(export, &factor))
 }
 
 /// What the recommended tests say. A hypothesis of two factors is about their interaction, which stands
@@ -344,7 +369,7 @@ fn within_people(
         }
         TestName::Spearman => {
             let x = as_numbers(factor);
-            people.overall = vec![person_level::correlation_within_people(&x, measure)];
+            people.overall = vec![person_level::correlation_with_levels(export, measure, factor)];
             people.pairs.clear();
             vec![TestLine::spearman(&x, &measure.numbers(), &Unit::Trials)]
         }

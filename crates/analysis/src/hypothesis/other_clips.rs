@@ -115,11 +115,18 @@ pub(crate) fn tested(
     let ids = measure.person.iter().map(|person| Some(export.people[*person].id.as_str()));
     let person = Factor::from_cells("participant", ids, |_| None);
     let values = measure.numbers();
+    // Averages need the same segments at every level; the model contains the segments.
+    let matching = measure.matching(export, factor);
     let call = Call::new(Design::PeopleAndSegments, MinFPrime::NAMES.function)
+        .list(&matching.by)
         .text(&measure.id)
         .text(&factor.name)
         .list(&factor.levels);
-    let min_f = TestLine::min_f(min_f_prime(&values, [factor, &person, &segment]), call);
+    let rows = matching.rows();
+    let (matched, level) = measure.at(factor, &rows);
+    let at = |factor: &Factor| measure.at(factor, &rows).1;
+    let factors = [&level, &at(&person), &at(&segment)];
+    let min_f = TestLine::min_f(min_f_prime(&matched.numbers(), factors), call);
     let levels = factor.levels.clone();
     if !decides && tests == OtherClipsTests::MinF {
         return Some(OtherClips { decides, levels, min_f, mixed_model: None });
@@ -127,6 +134,10 @@ pub(crate) fn tested(
     let crossed = person.crossed(factor);
     let groupings = [&person, &crossed, &segment, &clip];
     let options = MixedModelOptions { ratio_of_last: true, ..MixedModelOptions::default() };
+    if measure.has_one_row_per_person() {
+        let mixed_model = Some(Outcome::undefined(Why::OneRatingPerPerson));
+        return Some(OtherClips { decides, levels, min_f, mixed_model });
+    }
     let mixed_model = match mixed_model(&values, &[factor], &groupings, options) {
         Err(refusal) => Outcome::undefined(refusal),
         Ok(outcome) => outcome.map(told).map_reason(Why::from),

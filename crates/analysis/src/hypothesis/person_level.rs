@@ -11,7 +11,8 @@ use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
 use crate::hypothesis::undefined::TestOutcome;
 use crate::trials::export::Export;
-use crate::trials::measure::Measure;
+use crate::trials::matching::Matching;
+use crate::trials::measure::{Measure, as_numbers};
 
 /// Two levels compared within people.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -68,9 +69,20 @@ impl WithinDesigns {
 
 /// Friedman with Iman and Davenport's F, then exact paired tests with Holm's correction, of person means.
 pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> PersonLevel {
-    let blocks = &measure.person_means(export, factor);
+    within_matched(export, measure, factor, &measure.matching(export, factor))
+}
+
+/// The same of matched sets that are known.
+pub(crate) fn within_matched(
+    export: &Export,
+    measure: &Measure,
+    factor: &Factor,
+    matching: &Matching,
+) -> PersonLevel {
+    let blocks = &measure.person_means(export, factor, matching);
     of_blocks(blocks, WithinDesigns::MEASURE, |design, test| {
-        Call::new(design, test).text(&measure.id).text(&factor.name).list(&factor.levels)
+        let call = Call::new(design, test).list(&matching.by).text(&measure.id);
+        call.text(&factor.name).list(&factor.levels)
     })
 }
 
@@ -133,7 +145,9 @@ fn pair(blocks: &Blocks, a: usize, b: usize, call: Call) -> Pair {
 
 /// Aligned rank transform of the means of each person and combination.
 pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [&Factor; 2]) -> PersonLevel {
-    let [first, second] = factors;
+    let keys = factors.map(|factor| measure.matching_keys(export, factor));
+    let matched_on = keys.each_ref().map(|keys| keys.names(export));
+    let (measure, [first, second]) = &measure.matched_in_both(export, factors, &keys);
     let width = second.levels.len();
     let combinations: Vec<[&str; 2]> = first
         .levels
@@ -159,7 +173,7 @@ pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [&Factor; 2])
     let used = combinations.into_iter().zip(is_used).filter(|(_, used)| *used);
     let combinations: Vec<[&str; 2]> = used.map(|(levels, _)| levels).collect();
     let cells = cells.used();
-    let blocks = measure.person_means(export, &cells);
+    let blocks = measure.cell_means(export, &cells);
     let (mut values, mut people, mut level) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
     for (person, means) in blocks.blocks.iter().zip(&blocks.responses) {
         for ([a, b], mean) in combinations.iter().zip(means) {
@@ -175,7 +189,7 @@ pub(crate) fn two_way(export: &Export, measure: &Measure, factors: [&Factor; 2])
     let (a, b) = (factor(&first.name, &level[0]), factor(&second.name, &level[1]));
     let person = factor("participant_id", &people);
     let values = Numbers { name: measure.id.clone(), values };
-    let overall = TestLine::aligned_rank_transform(&values, [&a, &b], &person);
+    let overall = TestLine::aligned_rank_transform(&values, [&a, &b], &person, &matched_on);
     PersonLevel {
         people: blocks.blocks.len(),
         incomplete: blocks.incomplete,
@@ -192,7 +206,8 @@ pub(crate) fn differences_by_trait(
     within: &Factor,
     about: &Factor,
 ) -> Vec<TestOutcome> {
-    let means = measure.person_means_by_place(within);
+    let matching = measure.matching(export, within);
+    let means = measure.person_means_by_place(within, &matching);
     let overall = measure.overall_person_means();
     let rows: Vec<usize> = means
         .people
@@ -213,6 +228,7 @@ pub(crate) fn differences_by_trait(
             let line = TestLine::of_groups(&differences, &about, &unit);
             let call = |test| {
                 Call::new(Design::DifferencesByTrait, test)
+                    .list(&matching.by)
                     .text(&measure.id)
                     .text(&within.name)
                     .list(&within.levels)
@@ -234,6 +250,18 @@ pub(crate) fn between(measure: &Measure, factor: &Factor) -> PersonLevel {
     let values = Numbers { name: measure.id.clone(), values: means.means };
     let overall = TestLine::of_groups(&values, &factor, &Unit::PersonMeans);
     PersonLevel { people, incomplete: 0, overall: vec![overall], pairs: Vec::new() }
+}
+
+/// Each person's own rho of a factor of the clips and a measure, over the matched sets.
+pub(crate) fn correlation_with_levels(
+    export: &Export,
+    measure: &Measure,
+    factor: &Factor,
+) -> TestOutcome {
+    let matching = measure.matching(export, factor);
+    let (measure, factor) = measure.at(factor, &matching.rows());
+    let outcome = correlation_within_people(&as_numbers(&factor), &measure);
+    outcome.map(|line| TestLine { call: line.call.list(&factor.levels).list(&matching.by), ..line })
 }
 
 /// Each person's own rho, then a signed rank test of them against zero.

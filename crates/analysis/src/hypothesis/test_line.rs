@@ -349,11 +349,14 @@ impl TestLine {
         values: &Numbers,
         factors: [&Factor; 2],
         person: &Factor,
+        matched_on: &[Vec<String>; 2],
     ) -> Vec<TestOutcome> {
         let result = aligned_rank_transform(values, &factors, person);
         let call = |effect: usize| {
             two_factors(Design::Combinations, AlignedRankTransform::NAMES, values, factors)
                 .number(effect + 1)
+                .list(&matched_on[0])
+                .list(&matched_on[1])
         };
         Self::all::<AlignedRankTransform>(result, &Unit::PersonMeans, call)
     }

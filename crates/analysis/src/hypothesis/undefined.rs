@@ -19,6 +19,8 @@ pub(crate) enum Why {
     NotTested(NotTested),
     /// No trials of one person differ in the factor alone.
     NoMatchedTrials,
+    /// Every participant has one rating: nothing tells how participants differ.
+    OneRatingPerPerson,
     /// No test is there for columns of these kinds.
     NoTest,
 }
@@ -27,7 +29,7 @@ impl Why {
     /// In the middle of a sentence.
     pub(crate) fn words(&self, language: Language) -> String {
         match self {
-            Self::Statistic(undefined) => undefined.words(language),
+            Self::Statistic(undefined) => without_options(undefined.words(language), language),
             Self::NotTested(why) => why.words(language),
             Self::NoMatchedTrials => language
                 .pick(
@@ -35,11 +37,27 @@ impl Why {
                     "aucun essai d’une même personne ne diffère par ce seul facteur",
                 )
                 .to_owned(),
+            Self::OneRatingPerPerson => language
+                .pick(
+                    "every participant has one rating, which does not show how participants differ",
+                    "chaque personne n’a qu’une note, ce qui ne montre pas comment les personnes diffèrent",
+                )
+                .to_owned(),
             Self::NoTest => {
                 language.pick("no test is defined", "aucun test n’est défini").to_owned()
             }
         }
     }
+}
+
+/// Without the remedy at the end where it is an option of the command line, which readers of a report do not have.
+fn without_options(mut words: String, language: Language) -> String {
+    if let Some(remedy) = words.rfind(language.pick("; ", " ; "))
+        && words[remedy..].contains("--")
+    {
+        words.truncate(remedy);
+    }
+    words
 }
 
 impl From<Undefined> for Why {

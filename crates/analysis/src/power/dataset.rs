@@ -19,7 +19,7 @@ use crate::simulate::{
     eighths,
 };
 use crate::trials::export::{
-    Answer, Beside, Export, Person as Who, Trial, exclude_people, why_left_out,
+    Answer, Beside, ExcludedTrial, Export, Person as Who, Trial, exclude_people, why_left_out,
 };
 use crate::trials::straight_lining::Runs;
 
@@ -298,7 +298,8 @@ impl<'d> Data<'d> {
         let flow = exclude_people(study, &mut self.export.people, &self.stages);
         self.export.flow = flow;
         let mut kept: Vec<Option<usize>> = Vec::with_capacity(self.trials.len());
-        for (person, trial, quickest) in self.trials {
+        let mut excluded: Vec<Option<usize>> = vec![None; self.trials.len()];
+        for (number, (person, trial, quickest)) in self.trials.into_iter().enumerate() {
             if self.export.people[person].excluded.is_some() {
                 kept.push(None);
                 continue;
@@ -308,6 +309,9 @@ impl<'d> Data<'d> {
                 Some(reason) => {
                     *self.export.flow.trials_left_out.entry(reason).or_insert(0) += 1;
                     kept.push(None);
+                    excluded[number] = Some(self.export.excluded_trials.len());
+                    let own = ExcludedTrial { person, trial, questions: Vec::new() };
+                    self.export.excluded_trials.push(own);
                 }
                 None => {
                     self.export.trials.push(trial);
@@ -317,6 +321,9 @@ impl<'d> Data<'d> {
         }
         self.export.flow.trials_used = self.export.trials.len();
         for (response, answer) in self.answers {
+            if let Some(place) = excluded[answer.trial] {
+                self.export.excluded_trials[place].questions.push(response.clone());
+            }
             if let Some(trial) = kept[answer.trial] {
                 let answers = self.export.answers.entry(response).or_default();
                 answers.push(Answer { trial, ..answer });

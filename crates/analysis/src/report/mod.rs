@@ -20,6 +20,7 @@ use crate::mimicry::tables::FaceTables;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use crate::trials::stimulus_measures::StimulusMeasures;
+use crate::trials::versions::{StudyVersions, other_versions};
 use preview::Preview;
 
 /// A report: its files, and its findings in short.
@@ -45,6 +46,8 @@ pub struct ReportOptions<'a> {
     pub faces: Option<MeasuredFaces<'a>>,
     /// Address of the study's preview: what stands for one clip in a figure leads to that clip there.
     pub preview: Option<&'a str>,
+    /// Which study file this is and which were served: another study's answers are refused, and differences are reported.
+    pub versions: StudyVersions<'a>,
 }
 
 /// Participants' faces, and how the clips moved that they saw.
@@ -69,7 +72,8 @@ pub fn analyze_with(
     language: Language,
     options: ReportOptions<'_>,
 ) -> Result<Report, ExportError> {
-    let ReportOptions { stimuli, faces, preview } = options;
+    let ReportOptions { stimuli, faces, preview, versions } = options;
+    let versions = other_versions(table, study, versions)?;
     let stimuli = stimuli.map(|table| StimulusMeasures::read(table, study)).transpose()?;
     let read = |MeasuredFaces { tracks, courses }| FaceTables::read(tracks, courses);
     let faces = faces.map(read).transpose()?;
@@ -78,7 +82,11 @@ pub fn analyze_with(
         return Err(export.flow.no_trial());
     }
     let section::Sections { document, results, readings, replay } = {
-        let beside = section::Beside { stimuli: stimuli.as_ref(), faces: faces.as_ref() };
+        let beside = section::Beside {
+            stimuli: stimuli.as_ref(),
+            faces: faces.as_ref(),
+            versions: &versions,
+        };
         section::write(&export, study, beside, preview.map(Preview), language)
     };
     let mut files = document_files(&document, language);

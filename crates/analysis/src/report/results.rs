@@ -23,7 +23,9 @@ use crate::report::section::stimulus_measures::MeasureCorrelation;
 use crate::report::section::traces::MeanTraces;
 use crate::scaling::BlockScale;
 use crate::thresholds::BlockThresholds;
+use crate::trials::exclusion_rates::ExclusionRates;
 use crate::trials::export::{Flow, Person};
+use crate::trials::versions::OtherVersion;
 
 /// Everything that was computed, for `results.json`.
 #[derive(Serialize, Default)]
@@ -33,7 +35,13 @@ pub(crate) struct Results<'a> {
     pub language: &'static str,
     pub flow: Option<&'a Flow>,
     pub people: &'a [Person],
+    /// Whether trials are excluded more often at some levels of a factor.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub exclusion_rates: Vec<ExclusionRates>,
     pub about_people: BTreeMap<String, AboutPeople>,
+    /// Versions of the study that were served, other than this file.
+    #[serde(skip_serializing_if = "<[OtherVersion]>::is_empty")]
+    pub other_versions: &'a [OtherVersion],
     pub hypotheses: Vec<HypothesisResult>,
     pub confusion: Vec<NamedConfusion>,
     pub comparisons: Vec<Comparison>,
@@ -79,6 +87,7 @@ pub(crate) struct Results<'a> {
 impl Results<'_> {
     /// What a part of the report has computed, behind what is there.
     pub(crate) fn append(&mut self, part: Self) {
+        self.exclusion_rates.extend(part.exclusion_rates);
         self.about_people.extend(part.about_people);
         self.hypotheses.extend(part.hypotheses);
         self.confusion.extend(part.confusion);

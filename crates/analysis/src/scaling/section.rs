@@ -4,6 +4,7 @@ use mimique_report::document::{Block, DataTable, Figure, slug};
 use mimique_stats::{DifferenceScale, Outcome};
 
 use super::{BlockScale, ROUNDS, figure, scales};
+use crate::naming::people_counted;
 use crate::report::section::Writer;
 
 impl Writer<'_> {
@@ -35,8 +36,8 @@ impl Writer<'_> {
         };
         let (trials, people) = (found.trials, found.participants);
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("Maximum likelihood difference scaling (Maloney and Yang 2003) of {trials} judgements of {people} people: ψ is what is perceived of {parameter}; the lowest level has 0, and the unit is the standard deviation of one judgement, so that a step of 1 between two differences is told right in 84 % of judgements. Where the curve is flat, levels look alike."),
-            format!("Mise à l’échelle des différences par maximum de vraisemblance (Maloney et Yang 2003) de {trials} jugements de {people} personnes : ψ est ce qui est perçu de {parameter} ; le niveau le plus bas vaut 0 et l’unité est l’écart-type d’un jugement, si bien qu’un écart de 1 entre deux différences est bien jugé dans 84 % des cas. Là où la courbe est plate, les niveaux se ressemblent."),
+            format!("Maximum likelihood difference scaling (Maloney and Yang 2003) of {trials} judgements of {}: ψ is what is perceived of {parameter}; the lowest level has 0, and the unit is the standard deviation of one judgement, so that a step of 1 between two differences is told right in 84 % of judgements. Where the curve is flat, levels look alike.", people_counted(language, people)),
+            format!("Mise à l’échelle des différences par maximum de vraisemblance (Maloney et Yang 2003) de {trials} jugements de {} : ψ est ce qui est perçu de {parameter} ; le niveau le plus bas vaut 0 et l’unité est l’écart-type d’un jugement, si bien qu’un écart de 1 entre deux différences est bien jugé dans 84 % des cas. Là où la courbe est plate, les niveaux se ressemblent.", people_counted(language, people)),
         )));
         if found.interval.is_some() {
             let (rounds, seed, without) = (found.rounds, found.seed, found.without_scale);

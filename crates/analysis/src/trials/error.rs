@@ -39,6 +39,20 @@ pub enum ExportError {
         /// The cell.
         cell: String,
     },
+    /// Answers to another study.
+    #[error(
+        "column \"config_hash\": the answers of version {} belong to {}, not to the study \"{study}\"; give the study file that was served with this export",
+        .config_hash.chars().take(12).collect::<String>(),
+        .of.as_ref().map_or_else(|| "another study".to_owned(), |of| format!("the study \"{of}\""))
+    )]
+    AnotherStudy {
+        /// Hash of the study file that was served.
+        config_hash: String,
+        /// Identifier of the study that was served, if its file is known.
+        of: Option<String>,
+        /// Identifier of the study of the analysis.
+        study: String,
+    },
     /// Every trial is left out, or there is none.
     #[error(
         "column \"trial_type\": no trial is left: {people_left_out} of {people} people and {trials_left_out} of {trials} trials are left out{}; collect answers first, or look at the study's exclusions",

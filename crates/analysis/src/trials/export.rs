@@ -86,6 +86,16 @@ pub(crate) struct Trial {
     pub sound_off_ms: Option<f64>,
 }
 
+/// A trial that a rule excludes although its participant is used.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ExcludedTrial {
+    /// Place in [`Export::people`].
+    pub person: usize,
+    pub trial: Trial,
+    /// Responses that were given in it.
+    pub questions: Vec<String>,
+}
+
 /// The level of a trial of an adaptive block.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ShownLevel {
@@ -170,6 +180,8 @@ impl Flow {
 pub(crate) struct Export {
     pub people: Vec<Person>,
     pub trials: Vec<Trial>,
+    /// Trials that the rules exclude, of people who are used.
+    pub excluded_trials: Vec<ExcludedTrial>,
     /// Answers to each question that was answered in trials, in the order of the file.
     pub answers: BTreeMap<String, Vec<Answer>>,
     /// Answers on pages to the items of the study's scales, by item and person.
@@ -197,6 +209,7 @@ impl Export {
         Self {
             people: Vec::new(),
             trials: Vec::new(),
+            excluded_trials: Vec::new(),
             answers: BTreeMap::new(),
             page_answers: BTreeMap::new(),
             factors,
@@ -265,6 +278,7 @@ impl Export {
             for (reason, count) in part.left_out {
                 *self.flow.trials_left_out.entry(reason).or_insert(0) += count;
             }
+            self.excluded_trials.extend(part.excluded);
             let before = self.trials.len();
             self.trials.extend(part.trials);
             for (question, answers) in part.answers {

@@ -1,6 +1,6 @@
 //! A measure of the study: one number a trial, with its person and its factors.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_locale::Language;
 use mimique_stats::{Blocks, Factor, Numbers};
@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
+use crate::trials::matching::Matching;
 
 /// What kind of number a measure is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -29,6 +30,8 @@ pub(crate) enum MeasureKind {
 pub(crate) struct Measure {
     /// Identifier of the question, `.rt` behind it for its response time.
     pub id: String,
+    /// Identifier of the question.
+    pub question: String,
     /// What people read.
     pub label: String,
     pub kind: MeasureKind,
@@ -82,6 +85,7 @@ impl Measure {
         let recognition = asked.is_recognition();
         let mut measure = Self {
             id: asked.id.clone(),
+            question: asked.id.clone(),
             label: asked.label(language.code()),
             kind: if recognition { MeasureKind::Recognition } else { MeasureKind::Rating },
             scale: asked.scale(),
@@ -113,6 +117,7 @@ impl Measure {
     ) -> Option<Self> {
         let mut measure = Self {
             id: format!("{}.rt", asked.id),
+            question: asked.id.clone(),
             label: language.pick("Response time (s)", "Temps de réponse (s)").to_owned(),
             kind: MeasureKind::ResponseTime,
             scale: None,
@@ -166,21 +171,65 @@ impl Measure {
         Some(Factor::from_cells(name, cells, number))
     }
 
-    /// Mean of each person at each level of a factor; people without a value at some level are
-    /// incomplete.
-    pub(crate) fn person_means(&self, export: &Export, factor: &Factor) -> Blocks {
-        self.person_means_by_place(factor).blocks(export, factor)
+    /// Mean of each person at each level of a factor over the matched sets that the person has at every level; people
+    /// without such a set are incomplete.
+    pub(crate) fn person_means(
+        &self,
+        export: &Export,
+        factor: &Factor,
+        matching: &Matching,
+    ) -> Blocks {
+        self.person_means_by_place(factor, matching).blocks(export, factor)
     }
 
     /// The same, with the people's places in the export.
-    pub(crate) fn person_means_by_place(&self, factor: &Factor) -> PersonMeans {
+    pub(crate) fn person_means_by_place(
+        &self,
+        factor: &Factor,
+        matching: &Matching,
+    ) -> PersonMeans {
         let k = factor.levels.len();
-        let mut sums = Sums::new(self.people(), k);
+        let sets = &matching.set_of_row;
+        let last = sets.iter().flatten().max().map_or(0, |last| *last as usize + 1);
+        let mut sums = Sums::new(last, k);
+        let mut person_of_set = vec![0; last];
+        for (i, set) in sets.iter().enumerate() {
+            if let Some(set) = *set {
+                person_of_set[set as usize] = self.person[i];
+                sums.add(set as usize, factor.codes[i], self.values[i]);
+            }
+        }
+        // Every set counts the same, however many answers it has at a level.
+        let mut of_person: BTreeMap<usize, (Vec<f64>, f64)> = BTreeMap::new();
+        for (set, means) in sums.complete() {
+            let own = of_person.entry(person_of_set[set]).or_insert_with(|| (vec![0.0; k], 0.0));
+            own.1 += 1.0;
+            own.0.iter_mut().zip(means).for_each(|(sum, mean)| *sum += mean);
+        }
+        let people: Vec<usize> = of_person.keys().copied().collect();
+        let means = of_person.into_values();
+        let means = means.map(|(sums, n)| sums.into_iter().map(|sum| sum / n).collect());
+        let means: Vec<Vec<f64>> = means.collect();
+        let answering: BTreeSet<usize> = self.person.iter().copied().collect();
+        PersonMeans { incomplete: answering.len() - people.len(), people, means }
+    }
+
+    /// Mean of each person at each combination of factors, over all answers; people without a value at some combination
+    /// are incomplete.
+    pub(crate) fn cell_means(&self, export: &Export, cells: &Factor) -> Blocks {
+        let mut sums = Sums::new(self.people(), cells.levels.len());
         for (i, &value) in self.values.iter().enumerate() {
-            sums.add(self.person[i], factor.codes[i], value);
+            sums.add(self.person[i], cells.codes[i], value);
         }
         let (people, means): (Vec<usize>, Vec<Vec<f64>>) = sums.complete().unzip();
-        PersonMeans { incomplete: sums.met() - people.len(), people, means }
+        let means = PersonMeans { incomplete: sums.met() - people.len(), people, means };
+        means.blocks(export, cells)
+    }
+
+    /// Whether no person has several values.
+    pub(crate) fn has_one_row_per_person(&self) -> bool {
+        let mut seen = vec![false; self.people()];
+        self.person.iter().all(|&person| !std::mem::replace(&mut seen[person], true))
     }
 
     /// One more than the last person's place.
@@ -245,7 +294,7 @@ impl Measure {
         places.into_iter().map(|place| export.factors[place].clone()).collect()
     }
 
-    fn crossed_places(&self, export: &Export, factor: &Factor) -> Vec<usize> {
+    pub(super) fn crossed_places(&self, export: &Export, factor: &Factor) -> Vec<usize> {
         let combinations = export.combinations();
         // Each combination of levels with each code that it comes with.
         let k = factor.levels.len() + 1;

@@ -11,7 +11,7 @@ use mimique_study::{Clip, Exclusions, ShownCourse, Study, component_of};
 use crate::trials::column::Column;
 use crate::trials::error::ExportError;
 use crate::trials::export::{
-    Answer, Beside, Export, Person, ShownFace, ShownLevel, Trial, why_left_out,
+    Answer, Beside, ExcludedTrial, Export, Person, ShownFace, ShownLevel, Trial, why_left_out,
 };
 use crate::trials::reason::Reason;
 
@@ -61,6 +61,17 @@ pub(crate) struct TrialReader<'t> {
 /// What tells a trial.
 type TrialKey<'t> = (usize, &'t str, Option<&'t str>);
 
+/// Where a trial is stored.
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    /// In [`TrialRows::trials`].
+    Used(usize),
+    /// In [`TrialRows::excluded`].
+    Excluded(usize),
+    /// Nowhere: its participant is excluded.
+    OfExcludedPerson,
+}
+
 /// What a stretch of rows holds.
 #[derive(Default)]
 pub(crate) struct TrialRows {
@@ -72,6 +83,8 @@ pub(crate) struct TrialRows {
     pub left_out: BTreeMap<Reason, usize>,
     /// Rows of trials that name no trial or no response: they are in no trial.
     pub unread: usize,
+    /// Those left out themselves.
+    pub excluded: Vec<ExcludedTrial>,
     /// Trials used.
     pub trials: Vec<Trial>,
     /// Their answers, a trial being its place in `trials`.
@@ -162,9 +175,9 @@ impl<'t> TrialReader<'t> {
         }
         let mut read = TrialRows::default();
         let mut texts = Texts::default();
-        let mut seen: HashMap<TrialKey<'_>, Option<usize>> = HashMap::new();
+        let mut seen: HashMap<TrialKey<'_>, Place> = HashMap::new();
         // Rows of one trial mostly follow each other.
-        let mut last: Option<(TrialKey<'_>, Option<usize>)> = None;
+        let mut last: Option<(TrialKey<'_>, Place)> = None;
         for row in rows {
             if self.kind.text(row) != Some("trial") {
                 continue;
@@ -187,7 +200,11 @@ impl<'t> TrialReader<'t> {
                 }
             };
             last = Some((key, trial));
-            if let (Some(trial), Some(text)) = (trial, self.answer.text(row)) {
+            let Some(text) = self.answer.text(row) else { continue };
+            if let Place::Excluded(place) = trial {
+                read.excluded[place].questions.push(question.to_owned());
+            }
+            if let Place::Used(trial) = trial {
                 let answer = Answer {
                     person,
                     text: texts.shared(text),
@@ -324,25 +341,26 @@ fn segments_of_clips(study: &Study) -> HashMap<String, Arc<str>> {
 }
 
 impl TrialRows {
-    /// Counts a trial; its place if it is used.
+    /// Counts a trial and stores it.
     fn place(
         &mut self,
         reader: &TrialReader<'_>,
         person: usize,
         trial: Trial,
         quickest_ms: Option<f64>,
-    ) -> Option<usize> {
+    ) -> Place {
         self.person_of_trial.push(person);
         if reader.people[person].excluded.is_some() {
-            return None;
+            return Place::OfExcludedPerson;
         }
         self.considered += 1;
         if let Some(reason) = why_left_out(&reader.rules, &trial, quickest_ms) {
             *self.left_out.entry(reason).or_insert(0) += 1;
-            return None;
+            self.excluded.push(ExcludedTrial { person, trial, questions: Vec::new() });
+            return Place::Excluded(self.excluded.len() - 1);
         }
         self.trials.push(trial);
-        Some(self.trials.len() - 1)
+        Place::Used(self.trials.len() - 1)
     }
 }
 

@@ -63,32 +63,49 @@ fn it_is_the_test_of_person_means_and_stands_in_table_and_figure() {
     let found = hypothesis(&report);
     // The means of each person once more, from the export alone.
     let column = |name: &str| table.names().iter().position(|own| own == name);
-    let [person, method, response, answer, late, frames] =
-        ["participant", "method", "response_id", "answer", "frames_late", "frames"]
-            .map(|name| column(name).unwrap());
-    let mut sums = std::collections::BTreeMap::new();
+    let names = [
+        "participant",
+        "method",
+        "response_id",
+        "answer",
+        "frames_late",
+        "frames",
+        "expression",
+        "status",
+    ];
+    let [person, method, response, answer, late, frames, expression, status] =
+        names.map(|name| column(name).unwrap());
+    // Ratings of one person and segment by both methods.
+    let mut pairs = std::collections::BTreeMap::new();
     for row in 0..table.rows() {
         let cell = |at: usize| table.cell(row, at).unwrap_or_default();
         let number = |at: usize| cell(at).parse::<f64>().unwrap();
         // The study leaves trials with many late frames out.
-        if cell(response) != "believability" || number(late) > 0.2 * number(frames) {
+        let is_used = cell(response) == "believability" && cell(status) == "completed";
+        if !is_used || number(late) > 0.2 * number(frames) {
             continue;
         }
-        let sign = usize::from(cell(method) == "box");
-        let own: &mut [[f64; 2]; 2] = sums.entry(cell(person).to_owned()).or_default();
-        own[sign][0] += number(answer);
-        own[sign][1] += 1.0;
+        let key = (cell(person).to_owned(), cell(expression).to_owned());
+        let own: &mut [Option<f64>; 2] = pairs.entry(key).or_default();
+        own[usize::from(cell(method) == "box")] = Some(number(answer));
+    }
+    // A segment that the rule takes away at one method is compared at neither.
+    let mut sums = std::collections::BTreeMap::new();
+    for ((person, _), own) in pairs {
+        if let [Some(lsts), Some(boxed)] = own {
+            let sum: &mut [f64; 2] = sums.entry(person).or_default();
+            sum[0] += lsts - boxed;
+            sum[1] += 1.0;
+        }
     }
     let used = found["equivalence"]["people"][0].as_u64().unwrap() as usize;
-    let differences: Vec<f64> = sums.values().map(|[a, b]| a[0] / a[1] - b[0] / b[1]).collect();
-    assert!(differences.len() - used <= 1, "{used} of {}", differences.len());
-    if used == differences.len() {
-        let numbers = Numbers { name: "d".to_owned(), values: differences };
-        let own = equivalence_of_pairs(&numbers, &EquivalenceOptions::smallest_effect(0.5));
-        let own = own.unwrap().wilcoxon.ok().unwrap();
-        let p = found["p"].as_f64().unwrap();
-        assert!((own.p - p).abs() < 1e-12, "{} {p}", own.p);
-    }
+    let differences: Vec<f64> = sums.values().map(|[sum, n]| sum / n).collect();
+    assert_eq!(differences.len(), used);
+    let numbers = Numbers { name: "d".to_owned(), values: differences };
+    let own = equivalence_of_pairs(&numbers, &EquivalenceOptions::smallest_effect(0.5));
+    let own = own.unwrap().wilcoxon.ok().unwrap();
+    let p = found["p"].as_f64().unwrap();
+    assert!((own.p - p).abs() < 1e-12, "{} {p}", own.p);
     let zone = file(&report, "tables/figure-hypothesis-e1-zone.csv");
     assert_eq!(zone.lines().count(), 3, "{zone}");
     assert!(zone.contains("zone bas") && zone.contains("différence médiane"), "{zone}");
@@ -109,6 +126,52 @@ fn groups_of_people_are_compared_by_rank_sums() {
     assert_eq!(found["equivalence"]["within_people"], false);
     assert!(found["equivalence"]["beside"]["interval_90"].is_array());
     assert!(found["reading"].as_str().unwrap().contains("Welch"), "{found}");
+}
+
+/// A hypothesis of equivalence has two p. Both are corrected over the hypotheses of the study, and the decision, the table
+/// and the paragraph for a paper have the one that supports the decision.
+#[test]
+fn the_p_next_to_a_decision_is_the_p_of_that_decision() {
+    let mut study = study(0.1);
+    let asked = study.hypotheses[0].clone();
+    study.hypotheses = (1..=4)
+        .map(|number| mimique_study::Hypothesis { id: format!("E{number}"), ..asked.clone() })
+        .collect();
+    let (mut taken_back, mut kept) = (0, 0);
+    for seed in 1..40 {
+        let csv = export(&study, &Raters { people: 16, effect: 0.35, seed });
+        let table = Table::parse(csv.as_bytes()).unwrap();
+        let report = analyze(&table, &study, Language::English).unwrap();
+        let found = hypothesis(&report);
+        let p = found["equivalence"]["decides"]["p_difference"].as_f64().unwrap();
+        let corrected = found["p_difference_holm_over_hypotheses"].as_f64().unwrap();
+        assert!((corrected - (4.0 * p).min(1.0)).abs() < 1e-12, "{p} {corrected}");
+        let row = file(&report, "tables/hypotheses.csv").lines().nth(1).unwrap();
+        if corrected < 0.05 {
+            assert!(row.contains("different") && row.contains("(difference)"), "{row}");
+            assert!(!row.contains("(equivalence)"), "{row}");
+            let printed = Language::English.p_rounded(corrected);
+            assert!(row.contains(&format!("{printed} (difference)")), "{printed} {row}");
+            let paper = file(&report, "report.md").split("### Results").nth(1).unwrap();
+            assert!(paper.contains("(difference)"), "{paper}");
+        } else {
+            assert!(row.contains("undecided"), "{corrected} {row}");
+        }
+        taken_back += usize::from(p < 0.05 && corrected >= 0.05);
+        kept += usize::from(corrected < 0.05);
+    }
+    assert!(taken_back > 0 && kept > 0, "{taken_back} {kept}");
+}
+
+#[test]
+fn four_people_cannot_show_equivalence_and_that_is_said() {
+    // The last person does not finish.
+    for (people, is_said) in [(5, true), (6, false)] {
+        let found = hypothesis(&report(&study(6.0), people, 0.0, Language::English));
+        assert_eq!(found["equivalence"]["people"][0], people - 1);
+        let reading = found["reading"].as_str().unwrap();
+        assert_eq!(reading.contains("p could not fall below 0.0625"), is_said, "{reading}");
+    }
 }
 
 #[test]

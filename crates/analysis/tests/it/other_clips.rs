@@ -242,3 +242,26 @@ fn without_a_model_there_is_no_figure_and_that_is_said() {
         assert!(text.text.contains(words), "{}", text.text);
     }
 }
+
+/// One rating per person does not show how people differ: the mixed model has no result, and that is said.
+#[test]
+fn one_rating_per_person_gives_no_mixed_model() {
+    let study = demo_study();
+    let csv = export(&study, &Raters { people: 40, effect: 1.0, seed: 6 });
+    let mut lines = csv.lines();
+    let heading = lines.next().unwrap();
+    let names: Vec<&str> = heading.split(',').collect();
+    let place = |name: &str| names.iter().position(|own| *own == name).unwrap();
+    let [participant, order] = ["participant", "trial_order"].map(place);
+    let kept = lines.filter(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [participant, order] =
+            [participant, order].map(|at| cells[at].parse::<usize>().unwrap());
+        order == participant % 6 + 1
+    });
+    let csv = std::iter::once(heading).chain(kept).collect::<Vec<_>>().join("\n") + "\n";
+    let report =
+        analyze(&Table::parse(csv.as_bytes()).unwrap(), &study, Language::English).unwrap();
+    let reading = &report.readings[2].1;
+    assert!(reading.contains("every participant has one rating"), "{reading}");
+}

@@ -120,7 +120,7 @@ fn what_the_correction_takes_back_is_not_decided() {
         let reading = &report.readings[0].1;
         let first = format!("Corrected for the 4 hypotheses of this study: {words}, p");
         assert!(reading.starts_with(&first), "{p} {corrected} {reading}");
-        assert!(reading.contains("Before that correction:"), "{reading}");
+        assert!(reading.contains("; this p decides. Before that correction:"), "{reading}");
         let table = report.files.iter().find(|file| file.path == "tables/hypotheses.csv").unwrap();
         let row = table.text.lines().nth(1).unwrap();
         assert!(row.contains(words), "{corrected} {row}");
@@ -542,4 +542,39 @@ fn straight_lining_is_left_out_by_the_study_s_rule() {
     );
     let before = analyze(&table, &demo_study(), Language::French).unwrap();
     assert_eq!(report.people.0 + 1, before.people.0);
+}
+
+/// Counts of one are in the singular, in both languages.
+#[test]
+fn one_person_is_no_people() {
+    for (language, wrong, right) in [
+        (Language::English, " 1 people", "1 person"),
+        (Language::French, " 1 personnes", "1 personne"),
+    ] {
+        // The second person does not finish.
+        let report = report(&Raters { people: 2, effect: 0.0, seed: 3 }, language);
+        let text = &report.files.iter().find(|file| file.path == "report.md").unwrap().text;
+        for line in text.lines() {
+            // The chart of participants counts under fixed labels.
+            let counted = !line.contains('→');
+            assert!(!counted || !line.contains(wrong), "{line}");
+        }
+        assert!(text.contains(right), "{text}");
+    }
+}
+
+/// A report says why a test is undefined; what to type on a command line instead is not for its readers.
+#[test]
+fn reasons_name_no_options_of_the_command_line() {
+    let mut study = support::study_in_conditions();
+    study.hypotheses.truncate(2);
+    // Mann-Whitney of three conditions.
+    study.hypotheses[1].levels.clear();
+    let csv = export(&study, &Raters { people: 31, effect: 0.0, seed: 3 });
+    let table = Table::parse(csv.as_bytes()).unwrap();
+    for language in [Language::English, Language::French] {
+        let report = analyze(&table, &study, language).unwrap();
+        let text = &report.files.iter().find(|file| file.path == "report.md").unwrap().text;
+        assert!(!text.contains(" --"), "{text}");
+    }
 }

@@ -25,7 +25,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
-use mimique_analysis::{Report, ReportOptions, analyze_with};
+use mimique_analysis::{Report, ReportOptions, StudyVersions, analyze_with};
 use mimique_locale::{Language, counted, counted_as};
 use mimique_server::export::stimuli_of;
 use mimique_server::{Assets, EmbeddedFile, HostedStudy, Hosting, Stage};
@@ -234,9 +234,14 @@ impl Capsule<'_> {
         let table = Table::parse(csv)?;
         let shown = !self.study().clips().is_empty();
         let stimuli = shown.then(|| Table::parse(stimuli)).transpose()?;
+        let versions = StudyVersions { config_hash: Some(self.checked.config_hash()), served: &[] };
         // What was measured of faces says much of a person, and is not shared.
-        let options =
-            ReportOptions { stimuli: stimuli.as_ref(), faces: None, preview: Some(READER) };
+        let options = ReportOptions {
+            stimuli: stimuli.as_ref(),
+            preview: Some(READER),
+            versions,
+            ..ReportOptions::default()
+        };
         analyze_with(&table, self.study(), self.args.language, options)
             .with_context(|| self.args.export.display().to_string())
     }

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mimique_analysis::{MeasuredFaces, Report, ReportOptions, analyze_with};
+use mimique_analysis::{
+    MeasuredFaces, Report, ReportOptions, ServedVersion, StudyVersions, analyze_with,
+};
 use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_storage::Storage;
@@ -11,6 +13,7 @@ use mimique_study::Study;
 use tokio::sync::Semaphore;
 
 use crate::error::Error;
+use crate::export::sources::Sources;
 use crate::export::{Format, Options, courses, export, stimuli};
 use crate::state::hosted_study::HostedStudy;
 
@@ -56,9 +59,17 @@ impl Reports {
             Some(_) => Some(measured_faces(storage, study.id()).await?),
             None => None,
         };
+        let sources = Sources::load(storage, study.id()).await?;
+        let served: Vec<ServedVersion> = sources
+            .versions
+            .into_iter()
+            .map(|own| ServedVersion { config_hash: own.config_hash, study: own.study })
+            .collect();
+        let hash = study.config_hash().to_owned();
         let (study, preview) = (study.study().clone(), preview.to_owned());
         let made = tokio::task::spawn_blocking(move || {
-            make(&csv, &stimuli, faces.as_ref(), &study, language, &preview)
+            let versions = StudyVersions { config_hash: Some(&hash), served: &served };
+            make(&csv, &stimuli, faces.as_ref(), (&study, versions), language, &preview)
         });
         let report = made.await.map_err(Error::internal)??;
         let report = Arc::new(report);
@@ -83,7 +94,7 @@ fn make(
     csv: &[u8],
     stimuli: &[u8],
     faces: Option<&[Vec<u8>; 2]>,
-    study: &Study,
+    (study, versions): (&Study, StudyVersions<'_>),
     language: Language,
     preview: &str,
 ) -> Result<Report, Error> {
@@ -99,7 +110,8 @@ fn make(
         Some((Some(tracks), Some(courses))) => Some(MeasuredFaces { tracks, courses }),
         _ => None,
     };
-    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview: Some(preview) };
+    let preview = Some(preview);
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions };
     analyze_with(&table, study, language, options).map_err(no_report)
 }
 

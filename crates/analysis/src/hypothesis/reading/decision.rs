@@ -3,7 +3,8 @@
 use mimique_locale::Language;
 
 use super::verdict;
-use crate::hypothesis::decision::{Decision, Sought};
+use crate::hypothesis::HypothesisResult;
+use crate::hypothesis::decision::{Decision, Sought, Supports, deciding_p_values};
 
 /// A shape that says the same as the words, without colour: filled where something was shown.
 pub(crate) fn mark(decision: Decision) -> &'static str {
@@ -15,6 +16,21 @@ pub(crate) fn mark(decision: Decision) -> &'static str {
         Decision::NotShown(_) | Decision::Equivalence(Verdict::Undecided) => "○",
         Decision::NotTested => "–",
     }
+}
+
+/// What a p supports, in brackets behind it; nothing where there is one test.
+pub(crate) fn supports(language: Language, supports: Supports) -> &'static str {
+    match supports {
+        Supports::TheDecision => "",
+        Supports::Equivalence => language.pick(" (equivalence)", " (équivalence)"),
+        Supports::Difference => language.pick(" (difference)", " (différence)"),
+    }
+}
+
+/// The p values on which a decision rests.
+pub(crate) fn deciding_p(language: Language, result: &HypothesisResult) -> Vec<String> {
+    let values = deciding_p_values(result).into_iter();
+    values.map(|(of, p)| format!("{}{}", language.p(p), supports(language, of))).collect()
 }
 
 /// The decision in words.

@@ -3,9 +3,9 @@
 use mimique_locale::Language;
 use mimique_stats::{EquivalenceVerdict, Outcome};
 
-use super::{difference, unit};
+use super::{LEVEL, difference, unit};
 use crate::hypothesis::equivalence::{Equivalence, OneSidedTests};
-use crate::naming::Naming;
+use crate::naming::{Naming, people_counted};
 use crate::trials::measure::{Measure, MeasureKind};
 
 /// The verdict on two levels, with the numbers that it rests on.
@@ -55,18 +55,59 @@ pub(crate) fn equivalence(
         ),
     };
     let test = line.names.in_words[language.pick(0, 1)];
-    let mut numbers = vec![format!("{test}, {}", language.p(line.row.p_value))];
-    numbers.extend(found.decides.p_difference.map(|p| {
+    let mut numbers = vec![language.pick(
+        format!("equivalence by {test}, {}", language.p(line.row.p_value)),
+        format!("équivalence par {test}, {}", language.p(line.row.p_value)),
+    )];
+    let of_difference = found.decides.p_difference.map(|p| {
         let p = language.p(p);
         language.pick(format!("of any difference {p}"), format!("d’une différence quelconque {p}"))
-    }));
+    });
+    // The p on which the verdict rests comes first.
+    match found.decides.verdict {
+        Some(EquivalenceVerdict::Different) => numbers.splice(0..0, of_difference).for_each(drop),
+        _ => numbers.extend(of_difference),
+    }
     numbers.extend(estimate(language, kind, found));
-    numbers.push(language.pick(format!("{people} people"), format!("{people} personnes")));
+    numbers.push(match found.people.as_slice() {
+        [people] => people_counted(language, *people),
+        _ => language.pick(format!("{people} people"), format!("{people} personnes")),
+    });
+    if let Some(words) = too_few(language, found, (&a, &b)) {
+        numbers.push(words);
+    }
     let numbers = numbers.join("; ");
     let colon = language.pick("", "\u{a0}");
     let topic = language.pick(format!("On “{label}”"), format!("Pour « {label} »"));
     let beside = beside(language, &found.beside);
     format!("{topic}{colon}: {verdict} ({numbers}).{beside}")
+}
+
+/// What too few people cannot show, whatever they answer: the smaller of both one-sided p is at least that of the exact
+/// test in which everybody's difference is on the same side of a bound.
+fn too_few(language: Language, found: &Equivalence, (a, b): (&str, &str)) -> Option<String> {
+    let least = least_p(found.within_people, &found.people)?;
+    if least <= LEVEL {
+        return None;
+    }
+    let least = language.fixed(least, 4);
+    Some(language.pick(
+        format!("too few people to show that {a} and {b} are equivalent: whatever they answered, p could not fall below {least}"),
+        format!("trop peu de personnes pour montrer que {a} et {b} sont équivalents : quelles que soient leurs réponses, p ne pourrait descendre sous {least}"),
+    ))
+}
+
+/// The smallest p that the one-sided signed rank test of so many pairs can give, or of so many people in two groups the
+/// rank sum test.
+fn least_p(within_people: bool, people: &[usize]) -> Option<f64> {
+    match *people {
+        [pairs] if within_people => Some(0.5_f64.powi(pairs.min(1000) as i32)),
+        [a, b] => {
+            let ways = (1..=a.min(b)).map(|i| (a.max(b) + i) as f64 / i as f64);
+            Some(1.0 / ways.product::<f64>())
+        }
+        _ => None,
+    }
 }
 
 /// The verdict in a word.

@@ -4,25 +4,31 @@
 mod decision;
 mod detection;
 mod equivalence;
+mod matching;
 mod other_clips;
 mod pairs;
+mod versions;
 
 use mimique_locale::Language;
 use mimique_stats::{Outcome, Term};
 
+use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::call::Design;
 use crate::hypothesis::comparison::Comparison;
-use crate::hypothesis::decision::Decision;
+use crate::hypothesis::decision::decision as decided;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::undefined::TestOutcome;
 use crate::naming::Naming;
+use crate::naming::people_counted;
 use crate::trials::measure::MeasureKind;
-pub(crate) use decision::{decision, mark};
+pub(crate) use decision::{deciding_p, decision, mark, supports};
 pub(crate) use detection::d_prime_by;
 pub(crate) use equivalence::{equivalence, verdict};
+pub(crate) use matching::{unequal_exclusion, unmatched};
 pub(crate) use other_clips::other_clips;
 use pairs::{each_pair, many_pairs, topic};
+pub(crate) use versions::other_version;
 
 /// The level of a test.
 pub(crate) const LEVEL: f64 = 0.05;
@@ -120,7 +126,10 @@ fn overall_sentence(
             );
         }
         return language.pick(
-            format!("{topic}, the levels of {what} differ: {numbers}, {} people.", line.row.n),
+            format!(
+                "{topic}, the levels of {what} differ: {numbers}, {}.",
+                people_counted(language, line.row.n)
+            ),
             format!(
                 "{topic}, les niveaux du facteur {what} diffèrent : {numbers}, {} personnes.",
                 line.row.n
@@ -130,13 +139,13 @@ fn overall_sentence(
     if let Some((first, second)) = interaction {
         let (first, second) = (naming.factor(first), naming.factor(second));
         return language.pick(
-            format!("{topic}, that the effect of {first} depends on {second} was not shown: {numbers}, {} people; that is no proof that it does not.", line.row.n),
-            format!("{topic}, que l’effet du facteur {first} dépende du facteur {second} n’a pas été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’en dépend pas.", line.row.n),
+            format!("{topic}, that the effect of {first} depends on {second} was not shown: {numbers}, {}; that is no proof that it does not.", people_counted(language, line.row.n)),
+            format!("{topic}, que l’effet du facteur {first} dépende du facteur {second} n’a pas été montré : {numbers}, {} ; cela ne prouve pas qu’il n’en dépend pas.", people_counted(language, line.row.n)),
         );
     }
     language.pick(
-        format!("{topic}, no effect of {what} was shown: {numbers}, {} people; that is no proof that there is none.", line.row.n),
-        format!("{topic}, aucun effet du facteur {what} n’a été montré : {numbers}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
+        format!("{topic}, no effect of {what} was shown: {numbers}, {}; that is no proof that there is none.", people_counted(language, line.row.n)),
+        format!("{topic}, aucun effet du facteur {what} n’a été montré : {numbers}, {} ; cela ne prouve pas qu’il n’y en a pas.", people_counted(language, line.row.n)),
     )
 }
 
@@ -174,12 +183,12 @@ fn acting_together(
     let test = line.names.test;
     let how = match &line.unit {
         Unit::DifferencesOfPeople(pair) => language.pick(
-            format!("{test} of each person’s difference {pair}, the smallest p of all pairs of levels after Holm’s correction: {numbers}, {} people", line.row.n),
-            format!("{test} sur la différence {pair} de chaque personne, le plus petit p de toutes les paires de niveaux après correction de Holm : {numbers}, {} personnes", line.row.n),
+            format!("{test} of each person’s difference {pair}, the smallest p of all pairs of levels after Holm’s correction: {numbers}, {}", people_counted(language, line.row.n)),
+            format!("{test} sur la différence {pair} de chaque personne, le plus petit p de toutes les paires de niveaux après correction de Holm : {numbers}, {}", people_counted(language, line.row.n)),
         ),
         _ => language.pick(
-            format!("{test} on one mean a person: {numbers}, {} people", line.row.n),
-            format!("{test} sur une moyenne par personne : {numbers}, {} personnes", line.row.n),
+            format!("{test} on one mean a person: {numbers}, {}", people_counted(language, line.row.n)),
+            format!("{test} sur une moyenne par personne : {numbers}, {}", people_counted(language, line.row.n)),
         ),
     };
     if significant {
@@ -198,15 +207,14 @@ fn acting_together(
 /// What the correction for all hypotheses of the study leaves of one; what follows it is without that correction.
 pub(crate) fn over_hypotheses(
     language: Language,
-    found: Decision,
-    p_holm: f64,
+    result: &HypothesisResult,
     tested: usize,
 ) -> String {
-    let corrected = language.p(p_holm);
-    let words = decision(language, found);
+    let corrected = deciding_p(language, result).join(", ");
+    let words = decision(language, decided(result));
     language.pick(
-        format!("Corrected for the {tested} hypotheses of this study: {words}, {corrected}. Before that correction:"),
-        format!("Après correction pour les {tested} hypothèses de cette étude : {words}, {corrected}. Avant cette correction :"),
+        format!("Corrected for the {tested} hypotheses of this study: {words}, {corrected}; this p decides. Before that correction:"),
+        format!("Après correction pour les {tested} hypothèses de cette étude : {words}, {corrected} ; c’est ce p qui décide. Avant cette correction :"),
     )
 }
 

@@ -7,6 +7,7 @@ use super::{LEVEL, difference, unit};
 use crate::hypothesis::person_level::Pair;
 use crate::hypothesis::test_line::{OutcomeP, TestLine};
 use crate::naming::Naming;
+use crate::naming::people_counted;
 use crate::trials::measure::MeasureKind;
 
 /// A sentence on each pair; `label` is that of the question where nothing before has named it.
@@ -102,8 +103,8 @@ fn pair_sentence(
     if pair.least_p > LEVEL {
         let least = language.fixed(pair.least_p.min(1.0), 3);
         let words = language.pick(
-            format!("{} people are too few to compare {a} and {b}: even if all agreed, p could not fall below {least}. Observed: {observed}.", pair.n),
-            format!("{} personnes ne suffisent pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {least}. Observé : {observed}.", pair.n),
+            format!("{} too few to compare {a} and {b}: even if all agreed, p could not fall below {least}. Observed: {observed}.", language.counted(pair.n, ["person is", "people are"], ["", ""])),
+            format!("{} pas pour comparer {a} et {b} : même si toutes étaient d’accord, p ne pourrait descendre sous {least}. Observé : {observed}.", language.counted(pair.n, ["", ""], ["personne ne suffit", "personnes ne suffisent"])),
         );
         return sentence(words, false);
     }
@@ -124,14 +125,20 @@ fn pair_sentence(
         let (high, low) = (level(naming, factor, high), level(naming, factor, low));
         let higher = higher(language, kind);
         let words = language.pick(
-            format!("{high} {higher} {low}: so for {for_high} of {} people, the other way round for {for_low}; {observed}, {p}{corrected}.", pair.n),
-            format!("{high} {higher} {low} : c’est le cas pour {for_high} personnes sur {}, l’inverse pour {for_low} ; {observed}, {p}{corrected}.", pair.n),
+            format!("{high} {higher} {low}: so for {for_high} of {}, the other way round for {for_low}; {observed}, {p}{corrected}.", people_counted(language, pair.n)),
+            format!("{high} {higher} {low} : c’est le cas pour {} sur {}, l’inverse pour {for_low} ; {observed}, {p}{corrected}.", people_counted(language, for_high), pair.n),
         );
         return sentence(words, true);
     }
     let words = language.pick(
-        format!("no difference between {a} and {b} was shown: {observed}, {p}{corrected}, {} people.", pair.n),
-        format!("aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {} personnes.", pair.n),
+        format!(
+            "no difference between {a} and {b} was shown: {observed}, {p}{corrected}, {}.",
+            people_counted(language, pair.n)
+        ),
+        format!(
+            "aucune différence entre {a} et {b} n’a été montrée : {observed}, {p}{corrected}, {}.",
+            people_counted(language, pair.n)
+        ),
     );
     sentence(words, false)
 }
@@ -159,8 +166,8 @@ fn undefined_pair(language: Language, people: usize, a: &str, b: &str) -> String
         );
     }
     language.pick(
-        format!("each of the {people} people has the same mean for {a} and {b}: no test is defined."),
-        format!("chacune des {people} personnes a la même moyenne pour {a} et {b} : aucun test n’est défini."),
+        format!("every participant ({people}) has the same mean for {a} and {b}: no test is defined."),
+        format!("chaque personne ({people}) a la même moyenne pour {a} et {b} : aucun test n’est défini."),
     )
 }
 

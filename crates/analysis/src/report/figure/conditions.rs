@@ -5,6 +5,7 @@ use mimique_report::document::{DataTable, Figure};
 use mimique_report::figure::courses::{LEFT, RIGHT};
 use mimique_report::svg::{Anchor, Svg, clipped};
 
+use crate::naming::people_counted;
 use crate::report::figure::people::{tick, vertical};
 use crate::trials::measure::MeasureKind;
 
@@ -51,7 +52,7 @@ pub(crate) fn people_by_condition(
     svg.text((LEFT + RIGHT) / 2.0, bottom + 46.0, "small", Anchor::Middle, title);
     let spoken = spoken.join(", ");
     let alt = language.pick(
-        format!("One small point each of {} people by condition, a large one for the mean of each condition, with its number of people: {spoken}.", all().count()),
+        format!("One small point each of {} by condition, a large one for the mean of each condition, with its number of people: {spoken}.", people_counted(language, all().count())),
         format!("Un petit point pour chacune des {} personnes, par condition, un grand pour la moyenne de chaque condition, avec son effectif : {spoken}.", all().count()),
     );
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }

@@ -6,6 +6,7 @@ use mimique_report::figure::courses::{LEFT, RIGHT};
 use mimique_report::svg::{Anchor, Axis, Svg, clipped, shade};
 use mimique_stats::Proportion;
 
+use crate::naming::people_counted;
 use crate::report::figure::values_title;
 use crate::trials::measure::MeasureKind;
 
@@ -92,7 +93,7 @@ pub(crate) fn person_lines(
         .collect();
     let spoken = spoken.join(", ");
     let alt = language.pick(
-        format!("One thin line each of {} people, a thick line for their mean: {spoken}.", people.len()),
+        format!("One thin line each of {}, a thick line for their mean: {spoken}.", people_counted(language, people.len())),
         format!("Une ligne fine pour chacune des {} personnes, une ligne épaisse pour leur moyenne : {spoken}.", people.len()),
     );
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }

@@ -20,7 +20,7 @@ impl Collector {
             let key = format!("detection:{}", own.response);
             for category in &own.categories {
                 let key = format!("{key}:{}", category.category);
-                self.category(key, &own.response, ("", &[]), own.people, category);
+                self.category(key, &own.response, ("", &[], None), own.people, category);
             }
             for by in &own.by {
                 for category in &by.categories {
@@ -28,7 +28,8 @@ impl Collector {
                     for (level, at) in category.at.iter() {
                         let levels = [level.to_owned()];
                         let people = at.each.0.len();
-                        let of = (by.factor.as_str(), levels.as_slice());
+                        let matched = Some((by.matched_by.as_slice(), by.levels.as_slice()));
+                        let of = (by.factor.as_str(), levels.as_slice(), matched);
                         let key = format!("{key}:{level}");
                         self.category(key, &own.response, of, people, &at.detection);
                     }
@@ -74,7 +75,7 @@ impl Collector {
         &mut self,
         key: String,
         response: &str,
-        (factor, levels): (&str, &[String]),
+        (factor, levels, matched): (&str, &[String], Option<(&[String], &[String])>),
         all: usize,
         found: &CategoryDetection,
     ) {
@@ -87,6 +88,10 @@ impl Collector {
         }
         let call = Call::new(Design::Detection, Detection::NAMES.function);
         let call = call.text(response).text(&found.category).text(factor).list(levels);
+        let call = match matched {
+            Some((by, all_levels)) => call.list(by).list(all_levels),
+            None => call,
+        };
         let values = vec![
             ("statistic", t.statistic),
             ("p", t.p),

@@ -31,6 +31,8 @@ pub(super) struct Family {
     pub of: Vec<String>,
     pub into: Vec<String>,
     pub p_holm: Vec<f64>,
+    /// The hypothesis of each p, where one may have two; empty where each has one.
+    pub hypothesis: Vec<usize>,
     pub nearness: Nearness,
 }
 
@@ -62,7 +64,13 @@ impl Check {
 
 impl Family {
     pub(super) fn empty(nearness: Nearness) -> Self {
-        Self { of: Vec::new(), into: Vec::new(), p_holm: Vec::new(), nearness }
+        Self {
+            of: Vec::new(),
+            into: Vec::new(),
+            p_holm: Vec::new(),
+            hypothesis: Vec::new(),
+            nearness,
+        }
     }
 }
 

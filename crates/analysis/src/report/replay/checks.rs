@@ -25,7 +25,7 @@ impl Collector {
     pub(super) fn of(results: &Results<'_>) -> (Vec<Check>, Vec<Family>) {
         let mut all = Self::default();
         let mut decided = Family::empty(Nearness::Rounding);
-        for result in &results.hypotheses {
+        for (place, result) in results.hypotheses.iter().enumerate() {
             let key = format!("hypothesis:{}", result.id);
             all.trial_level(&key, &result.as_in_the_thesis);
             all.person_level(&key, &result.recommended);
@@ -46,6 +46,18 @@ impl Collector {
                 decided.of.push(deciding);
                 decided.into.push(format!("{key}:over hypotheses"));
                 decided.p_holm.push(p_holm);
+                decided.hypothesis.push(place);
+            }
+            let difference = result.equivalence.as_ref().and_then(|own| own.decides.p_difference);
+            if let (Some(p), Some(p_holm)) = (difference, result.p_difference_holm_over_hypotheses)
+            {
+                let key = format!("{key}:difference");
+                let call = Call::new(Design::Given, MixedModel::NAMES.function).given(p);
+                all.checks.push(Check::new(key.clone(), call, vec![("p", p)]));
+                decided.into.push(format!("{key}:over hypotheses"));
+                decided.of.push(key);
+                decided.p_holm.push(p_holm);
+                decided.hypothesis.push(place);
             }
         }
         all.families.extend((!decided.of.is_empty()).then_some(decided));
@@ -141,6 +153,7 @@ impl Collector {
 
     fn comparison(&mut self, comparison: &Comparison) {
         let (measure, factor) = (&comparison.measure, &comparison.factor);
+        let by = &comparison.matching.by;
         let key = format!("comparison:{measure}:{factor}");
         for (level, outcome) in comparison.descriptions.iter() {
             let Outcome::Ok(d) = outcome else { continue };
@@ -152,12 +165,17 @@ impl Collector {
                 ("q3", d.q3),
             ];
             values.extend(d.sd.map(|sd| ("sd", sd)));
-            let call = Call::new(Design::Level, "describe").text(measure).text(factor).text(level);
+            let call = Call::new(Design::Level, "describe")
+                .list(by)
+                .text(measure)
+                .text(factor)
+                .text(level)
+                .list(&comparison.levels);
             self.checks.push(Check::new(format!("{key}:{level}"), call, values));
         }
         for (place, (level, mean)) in comparison.person_means.iter().enumerate() {
             let Some(mean) = mean else { continue };
-            let call = Call::new(Design::PersonMean, "mean").text(measure).text(factor);
+            let call = Call::new(Design::PersonMean, "mean").list(by).text(measure).text(factor);
             let call = call.list(&comparison.levels).number(place + 1);
             let key = format!("{key}:{level}:people");
             self.checks.push(Check::new(key, call, vec![("mean", *mean)]));

@@ -76,7 +76,13 @@ fn calls(checks: &[Check], families: &[Family], script: Script) -> String {
         let _ = writeln!(text, "check({}, {call})", quoted(&check.key));
     }
     for family in families {
-        let _ = writeln!(text, "holm({}, {})", list(&family.of), list(&family.into));
+        let mut arguments = vec![list(&family.of), list(&family.into)];
+        let is_repeated = family.hypothesis.windows(2).any(|pair| pair[0] == pair[1]);
+        if is_repeated {
+            let hypotheses: Vec<String> = family.hypothesis.iter().map(usize::to_string).collect();
+            arguments.push(list(&hypotheses));
+        }
+        let _ = writeln!(text, "holm({})", arguments.join(", "));
     }
     text
 }

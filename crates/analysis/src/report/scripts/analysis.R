@@ -27,12 +27,23 @@ number <- function(name) {
   values
 }
 
-# Mean of each person (rows) at each level (columns); only people who have all of them.
-person_means <- function(y, g, levels) {
+# Matched sets: trials of one person that are equal in some columns. One mean per set (rows) and level (columns), only of
+# the sets that a person has at every level, and the set of each trial.
+set_of <- function(matched) do.call(paste, c(list(person), lapply(matched, function(name) trials[[name]]), sep = "\r"))
+set_means <- function(matched, y, g, levels, among = TRUE) {
   v <- number(y)
-  keep <- !is.na(v) & trials[[g]] %in% levels
-  m <- tapply(v[keep], list(person[keep], factor(trials[[g]][keep], levels)), mean)
+  keep <- !is.na(v) & trials[[g]] %in% levels & among
+  m <- tapply(v[keep], list(set_of(matched)[keep], factor(trials[[g]][keep], levels)), mean)
   m[complete.cases(m), , drop = FALSE]
+}
+# Whether each trial is of such a set.
+is_matched <- function(matched, y, g, levels, among = TRUE) {
+  !is.na(number(y)) & trials[[g]] %in% levels & among & set_of(matched) %in% rownames(set_means(matched, y, g, levels, among))
+}
+# Mean of each person (rows) at each level (columns) over the matched sets; only people who have one.
+person_means <- function(matched, y, g, levels) {
+  m <- set_means(matched, y, g, levels)
+  rowsum(m, sub("\r.*", "", rownames(m))) / as.vector(table(sub("\r.*", "", rownames(m))))
 }
 
 # Mean of each person over all trials, and what the first of them says of the person.
@@ -60,8 +71,8 @@ of_groups <- function(test, y, g, levels, unit) test(by_unit(y, g, levels, unit)
 
 # Each person's difference between two levels, compared between groups of people; Holm's correction is
 # over all pairs of levels.
-of_differences_by_trait <- function(test, y, g, levels, a, b, trait, trait_levels) {
-  m <- person_means(y, g, levels)
+of_differences_by_trait <- function(test, matched, y, g, levels, a, b, trait, trait_levels) {
+  m <- person_means(matched, y, g, levels)
   of_pair <- function(pair) {
     test(groups(round(m[, pair[1]] - m[, pair[2]], 9), about(trait, rownames(m)), trait_levels))
   }
@@ -75,9 +86,10 @@ of_columns <- function(test, x, y, unit) {
   means <- overall_means(y)
   test(number(x)[match(names(means), person)], as.vector(means))
 }
-of_correlations <- function(test, x, y) {
+of_correlations <- function(test, x, y, levels = NULL, matched = NULL) {
+  keep <- if (is.null(levels)) TRUE else is_matched(matched, y, x, levels)
   data <- data.frame(x = number(x), y = number(y), person = person)
-  data <- data[complete.cases(data), ]
+  data <- data[complete.cases(data) & keep, ]
   rho <- suppressWarnings(sapply(split(data, data$person), function(own) cor(own$x, own$y, method = "spearman")))
   result <- test(unname(rho[!is.na(rho)]))
   c(result[c("statistic", "p")], effect = unname(result["estimate"]), result["n"])
@@ -91,15 +103,15 @@ of_matched_trials <- function(test, y, g, levels, matched) {
   m <- m[complete.cases(m), , drop = FALSE]
   test(m[, 1] - m[, 2])
 }
-of_people <- function(test, y, g, levels, a, b) {
-  m <- person_means(y, g, levels)
+of_people <- function(test, matched, y, g, levels, a, b) {
+  m <- person_means(matched, y, g, levels)
   test(m[, a] - m[, b])
 }
-of_blocks <- function(test, y, g, levels) test(person_means(y, g, levels))
+of_blocks <- function(test, matched, y, g, levels) test(person_means(matched, y, g, levels))
 
 # Whether a difference lies between two bounds.
-of_people_within <- function(test, y, g, levels, low, high) {
-  m <- person_means(y, g, levels)
+of_people_within <- function(test, matched, y, g, levels, low, high) {
+  m <- person_means(matched, y, g, levels)
   test(m[, 1] - m[, 2], low, high)
 }
 of_groups_within <- function(test, y, g, levels, unit, low, high) {
@@ -119,10 +131,12 @@ of_two_factors <- function(test, y, a, a_levels, b, b_levels, effect, unit) {
   test(as.vector(v)[keep], of_a[keep], of_b[keep], effect)
 }
 
-# The means of each person and combination.
-of_combinations <- function(test, y, a, a_levels, b, b_levels, effect) {
+# The means of each person and combination, over trials that are matched in both factors.
+of_combinations <- function(test, y, a, a_levels, b, b_levels, effect, matched_a, matched_b) {
   v <- number(y)
-  keep <- !is.na(v) & trials[[a]] %in% a_levels & trials[[b]] %in% b_levels
+  keep <- is_matched(matched_a, y, a, a_levels)
+  keep <- is_matched(matched_b, y, b, b_levels, keep)
+  keep <- is_matched(matched_a, y, a, a_levels, keep)
   cell <- paste(trials[[a]][keep], trials[[b]][keep], sep = "\r")
   m <- tapply(v[keep], list(person[keep], cell), mean)
   m <- m[complete.cases(m), , drop = FALSE]
@@ -131,11 +145,12 @@ of_combinations <- function(test, y, a, a_levels, b, b_levels, effect) {
   test(as.vector(m), vapply(parts, `[`, "", 1), vapply(parts, `[`, "", 2), grid$person, effect)
 }
 
-of_level <- function(test, y, g, level) {
-  v <- number(y)
-  test(v[!is.na(v) & trials[[g]] %in% level])
+of_level <- function(test, matched, y, g, level, levels) {
+  test(number(y)[is_matched(matched, y, g, levels) & trials[[g]] %in% level])
 }
-of_person_means <- function(test, y, g, levels, place) c(mean = test(person_means(y, g, levels)[, place]))
+of_person_means <- function(test, matched, y, g, levels, place) {
+  c(mean = test(person_means(matched, y, g, levels)[, place]))
+}
 
 of_answers <- function(test, question, g, levels) {
   truth <- trials[[paste0(question, ".truth")]]
@@ -147,24 +162,27 @@ of_answers <- function(test, question, g, levels) {
 
 # How well a category is told from all others, person by person; at some levels of a factor, or without one in all
 # trials.
-of_detection <- function(test, question, category, g, levels) {
+of_detection <- function(test, question, category, g, levels, matched = NULL, all_levels = NULL) {
   truth <- trials[[paste0(question, ".truth")]]
   answer <- trials[[paste0(question, ".answer")]]
   keep <- !is.na(truth) & !is.na(answer)
   if (g != "") keep <- keep & trials[[g]] %in% levels
+  if (!is.null(matched)) keep <- keep & is_matched(matched, question, g, all_levels)
   test(person[keep], truth[keep], answer[keep], category)
 }
 # d' or criterion of each person (rows) at each level (columns); only people who have all of them.
-detection_by <- function(what, question, category, g, levels) {
+detection_by <- function(matched, what, question, category, g, levels) {
   people <- sort(unique(person))
-  m <- sapply(levels, function(level) of_detection(sensitivity, question, category, g, level)[what, ][people])
+  m <- sapply(levels, function(level) {
+    of_detection(sensitivity, question, category, g, level, matched, levels)[what, ][people]
+  })
   m[complete.cases(m), , drop = FALSE]
 }
-of_detection_blocks <- function(test, what, question, category, g, levels) {
-  test(detection_by(what, question, category, g, levels))
+of_detection_blocks <- function(test, matched, what, question, category, g, levels) {
+  test(detection_by(matched, what, question, category, g, levels))
 }
-of_detection_people <- function(test, what, question, category, g, levels, a, b) {
-  m <- detection_by(what, question, category, g, levels)
+of_detection_people <- function(test, matched, what, question, category, g, levels, a, b) {
+  m <- detection_by(matched, what, question, category, g, levels)
   test(m[, a] - m[, b])
 }
 
@@ -238,9 +256,9 @@ of_page_order <- function(test, y, g, levels) {
   test(pairs$person, pairs$left, pairs$right, c("right", "same", "left")[pairs$sign + 2], FALSE)
 }
 # Ratings by the levels of a factor, over people and segments.
-of_people_and_segments <- function(test, y, g, levels) {
+of_people_and_segments <- function(test, matched, y, g, levels) {
   v <- number(y)
-  keep <- !is.na(v) & trials[[g]] %in% levels & !is.na(trials$segment)
+  keep <- is_matched(matched, y, g, levels) & !is.na(trials$segment)
   test(v[keep], trials[[g]][keep], person[keep], trials$segment[keep])
 }
 # Ratings of confidence, blocks that choose what is shown, and ratings that follow the clip.
@@ -257,11 +275,15 @@ check <- function(key, values) {
   names_of <<- c(names_of, names(values))
   found <<- c(found, unname(values))
 }
-# Holm's correction of the p of several checks together.
-holm <- function(of, into) {
+# Holm's correction of the p of several checks together. Where a hypothesis has two p of which at most one can be wrong
+# (equivalence and difference), a p counts for the hypotheses that are not settled by smaller p.
+holm <- function(of, into, hypothesis = seq_along(of)) {
   # A check that is itself the smallest of several counts with its corrected p.
   own <- function(name) found[match(paste(of, name), paste(keys, names_of))]
-  p <- p.adjust(ifelse(is.na(own("p_holm")), own("p"), own("p_holm")), "holm")
+  p <- ifelse(is.na(own("p_holm")), own("p"), own("p_holm"))
+  places <- order(p)
+  open <- vapply(seq_along(p), function(i) length(unique(hypothesis[places[i:length(p)]])), 1)
+  p[places] <- pmin(1, cummax(open * p[places]))
   for (i in seq_along(of)) check(into[i], c(p_holm = p[i]))
 }
 

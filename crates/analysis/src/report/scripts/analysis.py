@@ -62,10 +62,32 @@ def means_by(keys, labels, values, levels):
     return whole, np.array(rows)
 
 
-def person_means(y, g, levels):
+def set_of(matched):
+    """Matched sets: trials of one person that are equal in some columns."""
+    return list(zip(person, *(columns[name] for name in matched)))
+
+
+def set_means(matched, y, g, levels, among=True):
+    """One mean per set (rows) and level (columns), only of the sets that a person has at every level."""
     v = number(y)
-    keep = ~np.isnan(v) & is_in(g, levels)
-    return means_by(person[keep], columns[g][keep], v[keep], levels)
+    keep = ~np.isnan(v) & is_in(g, levels) & among
+    sets = set_of(matched)
+    return means_by([sets[row] for row in np.flatnonzero(keep)], columns[g][keep], v[keep], levels)
+
+
+def is_matched(matched, y, g, levels, among=True):
+    """Whether each trial is of such a set."""
+    whole = set(set_means(matched, y, g, levels, among)[0])
+    is_whole = np.array([own in whole for own in set_of(matched)])
+    return ~np.isnan(number(y)) & is_in(g, levels) & among & is_whole
+
+
+def person_means(matched, y, g, levels):
+    """Mean of each person (rows) at each level (columns) over the matched sets; only people who have one."""
+    sets, m = set_means(matched, y, g, levels)
+    who = np.array([own[0] for own in sets], dtype=object)
+    people = sorted(set(who))
+    return people, np.array([m[who == one].sum(axis=0) / (who == one).sum() for one in people])
 
 
 def overall_means(y):
@@ -117,9 +139,9 @@ def adjusted(p):
     return corrected
 
 
-def of_differences_by_trait(test, y, g, levels, a, b, trait, trait_levels):
+def of_differences_by_trait(test, matched, y, g, levels, a, b, trait, trait_levels):
     """Each person's difference between two levels, compared between groups of people."""
-    people, m = person_means(y, g, levels)
+    people, m = person_means(matched, y, g, levels)
 
     def of_pair(i, j):
         return test(groups(np.round(m[:, i] - m[:, j], 9), about(trait, people), trait_levels))
@@ -139,9 +161,11 @@ def of_columns(test, x, y, unit):
     return test(np.array([first[key] for key in people]), means)
 
 
-def of_correlations(test, x, y):
+def of_correlations(test, x, y, levels=None, matched=None):
     a, b = number(x), number(y)
     keep = ~np.isnan(a) & ~np.isnan(b)
+    if levels is not None:
+        keep &= is_matched(matched, y, x, levels)
     rho = []
     for one in sorted(set(person[keep])):
         own = keep & (person == one)
@@ -160,18 +184,18 @@ def of_matched_trials(test, y, g, levels, matched):
     return test(m[:, 0] - m[:, 1])
 
 
-def of_people(test, y, g, levels, a, b):
-    _, m = person_means(y, g, levels)
+def of_people(test, matched, y, g, levels, a, b):
+    _, m = person_means(matched, y, g, levels)
     return test(m[:, a - 1] - m[:, b - 1])
 
 
-def of_blocks(test, y, g, levels):
-    return test(person_means(y, g, levels)[1])
+def of_blocks(test, matched, y, g, levels):
+    return test(person_means(matched, y, g, levels)[1])
 
 
-def of_people_within(test, y, g, levels, low, high):
+def of_people_within(test, matched, y, g, levels, low, high):
     """Whether the difference of two levels within people lies between two bounds."""
-    _, m = person_means(y, g, levels)
+    _, m = person_means(matched, y, g, levels)
     return test(m[:, 0] - m[:, 1], low, high)
 
 
@@ -189,10 +213,12 @@ def of_two_factors(test, y, a, a_levels, b, b_levels, effect, unit):
     return test(v[keep], of_a[keep], of_b[keep], effect)
 
 
-def of_combinations(test, y, a, a_levels, b, b_levels, effect):
-    """The means of each person and combination."""
+def of_combinations(test, y, a, a_levels, b, b_levels, effect, matched_a, matched_b):
+    """The means of each person and combination, over trials that are matched in both factors."""
     v = number(y)
-    keep = ~np.isnan(v) & is_in(a, a_levels) & is_in(b, b_levels)
+    keep = is_matched(matched_a, y, a, a_levels)
+    keep = is_matched(matched_b, y, b, b_levels, keep)
+    keep = is_matched(matched_a, y, a, a_levels, keep)
     cells = np.empty(keep.sum(), dtype=object)
     cells[:] = list(zip(columns[a][keep], columns[b][keep]))
     pairs = sorted(set(cells))
@@ -201,16 +227,15 @@ def of_combinations(test, y, a, a_levels, b, b_levels, effect):
     return test(m.ravel(), of_a, of_b, np.repeat(people, len(pairs)), effect)
 
 
-def of_level(test, y, g, level):
-    v = number(y)
-    return test(v[~np.isnan(v) & is_in(g, [level])])
+def of_level(test, matched, y, g, level, levels):
+    return test(number(y)[is_matched(matched, y, g, levels) & is_in(g, [level])])
 
 
 mean = np.mean
 
 
-def of_person_means(test, y, g, levels, place):
-    return dict(mean=test(person_means(y, g, levels)[1][:, place - 1]))
+def of_person_means(test, matched, y, g, levels, place):
+    return dict(mean=test(person_means(matched, y, g, levels)[1][:, place - 1]))
 
 
 def of_answers(test, question, g, levels):
@@ -221,30 +246,32 @@ def of_answers(test, question, g, levels):
     return test(truth[keep], answer[keep])
 
 
-def of_detection(test, question, category, g, levels):
+def of_detection(test, question, category, g, levels, matched=None, all_levels=None):
     """How well a category is told from all others, person by person; at some levels of a factor, or without one in
     all trials."""
     truth, answer = columns[question + ".truth"], columns[question + ".answer"]
     keep = (truth != "") & (answer != "")
     if g:
         keep &= is_in(g, levels)
+    if matched is not None:
+        keep &= is_matched(matched, question, g, all_levels)
     return test(person[keep].astype(str), truth[keep].astype(str), answer[keep].astype(str), category)
 
 
-def detection_by(what, question, category, g, levels):
+def detection_by(matched, what, question, category, g, levels):
     """d' or criterion of each person (rows) at each level (columns); only people who have all of them."""
-    at = [of_detection(sensitivity, question, category, g, [level]) for level in levels]
+    at = [of_detection(sensitivity, question, category, g, [level], matched, levels) for level in levels]
     people = sorted(set.intersection(*(set(own) for own in at)))
     m = np.array([[own[who][what] for own in at] for who in people])
     return m[~np.isnan(m).any(axis=1)]
 
 
-def of_detection_blocks(test, what, question, category, g, levels):
-    return test(detection_by(what, question, category, g, levels))
+def of_detection_blocks(test, matched, what, question, category, g, levels):
+    return test(detection_by(matched, what, question, category, g, levels))
 
 
-def of_detection_people(test, what, question, category, g, levels, a, b):
-    m = detection_by(what, question, category, g, levels)
+def of_detection_people(test, matched, what, question, category, g, levels, a, b):
+    m = detection_by(matched, what, question, category, g, levels)
     return test(m[:, a - 1] - m[:, b - 1])
 
 
@@ -333,10 +360,10 @@ def of_page_order(test, y, g, levels):
     return test(who, left, right, answer, False)
 
 
-def of_people_and_segments(test, y, g, levels):
+def of_people_and_segments(test, matched, y, g, levels):
     """Ratings by the levels of a factor, over people and segments."""
     v = number(y)
-    keep = ~np.isnan(v) & is_in(g, levels) & (columns["segment"] != "")
+    keep = is_matched(matched, y, g, levels) & (columns["segment"] != "")
     return test(v[keep], columns[g][keep], person[keep], columns["segment"][keep])
 
 
@@ -358,12 +385,18 @@ def check(key, values):
     found.update({(key, name): float(value) for name, value in values.items()})
 
 
-def holm(keys, into):
-    """Holm's correction of the p of several checks together."""
+def holm(keys, into, hypothesis=None):
+    """Holm's correction of the p of several checks together. Where a hypothesis has two p of which at most one can be
+    wrong (equivalence and difference), a p counts for the hypotheses that are not settled by smaller p."""
+    hypothesis = list(range(len(keys))) if hypothesis is None else hypothesis
     # A check that is itself the smallest of several counts with its corrected p.
     own = [found.get((key, "p_holm"), found[key, "p"]) for key in keys]
-    for key, p in zip(into, adjusted(own)):
-        found[key, "p_holm"] = float(p)
+    places = np.argsort(own, kind="stable")
+    running = 0.0
+    for i, place in enumerate(places):
+        still_open = len({hypothesis[other] for other in places[i:]})
+        running = max(running, still_open * own[place])
+        found[into[place], "p_holm"] = float(min(1.0, running))
 
 
 @CALLS@

@@ -8,6 +8,7 @@ use mimique_stats::{BradleyTerry, Outcome, PairedComparisons, Thurstone, WorthEs
 
 use crate::choices::reading::{self, chosen_in};
 use crate::choices::tested::{self, ChoiceTests};
+use crate::naming::people_counted;
 use crate::report::section::Writer;
 use crate::report::tables;
 use crate::trials::asked_question::AskedQuestion;
@@ -272,8 +273,8 @@ impl Writer<'_> {
         let p = found.p.map_or_else(String::new, |p| format!(" ({})", language.p(p)));
         let judges = found.judges;
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("Consistency (Kendall and Babington Smith): {circular} circular triads of at most {most} among {judges} people; agreement between them u = {u}{p}."),
-            format!("Cohérence (Kendall et Babington Smith) : {circular} triades circulaires sur {most} au plus parmi {judges} personnes ; accord entre elles u = {u}{p}."),
+            format!("Consistency (Kendall and Babington Smith): {circular} circular triads of at most {most} among {}; agreement between them u = {u}{p}.", people_counted(language, judges)),
+            format!("Cohérence (Kendall et Babington Smith) : {circular} triades circulaires sur {most} au plus parmi {} ; accord entre elles u = {u}{p}.", people_counted(language, judges)),
         )));
     }
 }

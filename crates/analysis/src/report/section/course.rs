@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::hypothesis::person_level;
 use crate::hypothesis::undefined::TestOutcome;
+use crate::naming::people_counted;
 use crate::report::figure::people::{self, Part};
 use crate::report::section::Writer;
 use crate::trials::measure::{Measure, MeasureKind};
@@ -26,7 +27,8 @@ impl Writer<'_> {
     /// A line a person over the levels of the factor that the study compares.
     pub(crate) fn person_lines(&mut self, measure: &Measure, factor: &Factor) {
         let language = self.language();
-        let blocks = measure.person_means(self.export, factor);
+        let matching = measure.matching(self.export, factor);
+        let blocks = measure.person_means(self.export, factor, &matching);
         if blocks.responses.is_empty() {
             return;
         }
@@ -125,13 +127,13 @@ fn trend_in_words(language: Language, label: &str, trend: &TestOutcome) -> Strin
             let rho = language.fixed(line.row.effect.unwrap_or(0.0), 2);
             if line.row.p_value < 0.05 {
                 language.pick(
-                    format!("{label}: answers change as the session goes on: median correlation of people with the place of the trial {rho}, {p}, {} people.", line.row.n),
-                    format!("{label} : les réponses changent au fil de la session : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes.", line.row.n),
+                    format!("{label}: answers change as the session goes on: median correlation of people with the place of the trial {rho}, {p}, {}.", people_counted(language, line.row.n)),
+                    format!("{label} : les réponses changent au fil de la session : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {}.", people_counted(language, line.row.n)),
                 )
             } else {
                 language.pick(
-                    format!("{label}: no change over the session was shown: median correlation of people with the place of the trial {rho}, {p}, {} people; that is no proof that there is none.", line.row.n),
-                    format!("{label} : aucun changement au fil de la session n’a été montré : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} personnes ; cela ne prouve pas qu’il n’y en a pas.", line.row.n),
+                    format!("{label}: no change over the session was shown: median correlation of people with the place of the trial {rho}, {p}, {}; that is no proof that there is none.", people_counted(language, line.row.n)),
+                    format!("{label} : aucun changement au fil de la session n’a été montré : corrélation médiane des personnes avec le rang de l’essai {rho}, {p}, {} ; cela ne prouve pas qu’il n’y en a pas.", people_counted(language, line.row.n)),
                 )
             }
         }

@@ -5,10 +5,14 @@ use mimique_report::figure::{DrawnInterval, forest_row};
 use mimique_stats::Outcome;
 
 use crate::hypothesis::HypothesisResult;
-use crate::hypothesis::decision::{Decision, Effect, EffectUnit, decision, effects};
+use crate::hypothesis::decision::{
+    Decision, Effect, EffectUnit, deciding_p_values, decision, effects,
+};
 use crate::hypothesis::reading;
+use crate::naming::people_counted;
 use crate::report::figure::flow_chart::flow_in_words;
 use crate::report::section::Writer;
+use crate::trials::exclusion_rates::by_factors;
 
 impl Writer<'_> {
     /// Who took part, and what the hypotheses found.
@@ -17,6 +21,9 @@ impl Writer<'_> {
         self.heading(2, "In short", "En bref");
         let flow = flow_in_words(language, &self.export.flow);
         self.blocks.push(Block::Paragraph(flow));
+        for version in self.other_versions {
+            self.blocks.push(Block::Caution(reading::other_version(language, version)));
+        }
         if hypotheses.is_empty() {
             self.paragraph(
                 "The study file states no hypothesis; every comparison below is exploratory.",
@@ -26,13 +33,32 @@ impl Writer<'_> {
             let decisions = self.decisions(hypotheses);
             self.blocks.push(Block::Decisions(decisions));
         }
+        self.unequal_exclusion(hypotheses);
         let n = self.export.flow.people_used;
         if n < 6 {
             self.blocks.push(Block::Caution(language.pick(
-                format!("With {n} people in the analysis no paired test can reach p < 0.05: six are the least, and most effects need many more. Take what follows as a trial run of the analysis."),
-                format!("Avec {n} personnes dans l’analyse, aucun test apparié ne peut atteindre p < 0,05 : il en faut au moins six, et la plupart des effets en demandent bien plus. Considérez ce qui suit comme un essai de l’analyse."),
+                format!("With {} in the analysis no paired test of a difference can reach p < 0.05: six are the least (five for equivalence), and most effects need many more. Take what follows as a trial run of the analysis.", people_counted(language, n)),
+                format!("Avec {} dans l’analyse, aucun test apparié d’une différence ne peut atteindre p < 0,05 : il en faut au moins six (cinq pour l’équivalence), et la plupart des effets en demandent bien plus. Considérez ce qui suit comme un essai de l’analyse.", people_counted(language, n)),
             )));
         }
+    }
+
+    /// Warnings where trials are excluded more often at some levels of the factors that are compared.
+    fn unequal_exclusion(&mut self, hypotheses: &[HypothesisResult]) {
+        let mut factors: Vec<&str> = self.factors.first().map(String::as_str).into_iter().collect();
+        for factor in hypotheses.iter().flat_map(|result| &result.factors) {
+            if !factors.contains(&factor.as_str()) {
+                factors.push(factor);
+            }
+        }
+        let rates = by_factors(self.export, &factors);
+        for own in &rates {
+            if let Some(p) = own.p_holm.filter(|p| *p < reading::LEVEL) {
+                let words = reading::unequal_exclusion(&self.naming, own, p);
+                self.blocks.push(Block::Caution(words));
+            }
+        }
+        self.results.exclusion_rates = rates;
     }
 
     /// A row per hypothesis.
@@ -72,10 +98,12 @@ impl Writer<'_> {
                 own => own.iter().map(|effect| self.effect_in_words(factor, effect)).collect(),
             };
             let found = decision(result);
-            let p = match result.p_holm_over_hypotheses.or(result.p) {
-                Some(p) => language.p_rounded(p),
-                None => "–".to_owned(),
-            };
+            let p = deciding_p_values(result).into_iter();
+            let p = p.map(|(of, p)| {
+                format!("{}{}", language.p_rounded(p), reading::supports(language, of))
+            });
+            let p: Vec<String> = p.collect();
+            let p = if p.is_empty() { "–".to_owned() } else { p.join("; ") };
             let people = match result.recommended.people {
                 0 => "–".to_owned(),
                 people => people.to_string(),

@@ -6,6 +6,7 @@ use mimique_stats::{
 };
 use serde::Serialize;
 
+use crate::naming::people_counted;
 use crate::report::figure::{DetectionPanel, DetectionPoints, detection_planes};
 use crate::report::section::Writer;
 use crate::report::section::detection_by_factor::DetectionByFactor;
@@ -99,8 +100,14 @@ impl Writer<'_> {
 
     fn detection_table(&self, result: &QuestionDetection, truth: &str) -> DataTable {
         let caption = self.language().pick(
-            format!("Detection of each category among all others ({} people)", result.people),
-            format!("Détection de chaque catégorie parmi les autres ({} personnes)", result.people),
+            format!(
+                "Detection of each category among all others ({})",
+                people_counted(language, result.people)
+            ),
+            format!(
+                "Détection de chaque catégorie parmi les autres ({})",
+                people_counted(language, result.people)
+            ),
         );
         let id = format!("{}-detection", slug(&result.response));
         let rows = result.categories.iter();

@@ -1,6 +1,6 @@
 //! d' and criterion at each level of the factors of the clips, and the levels compared within people.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{
@@ -16,13 +16,18 @@ use crate::report::section::Writer;
 use crate::report::section::detection::CategoryDetection;
 use crate::report::tables;
 use crate::trials::asked_question::AskedQuestion;
-use crate::trials::measure::MeasureKind;
+use crate::trials::measure::{Measure, MeasureKind};
+
+/// What answers are matched by, and detection at each level.
+type DetectedByLevel = (Vec<String>, Vec<(String, Detection)>);
 
 /// Detection at the levels of a factor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct DetectionByFactor {
     pub factor: String,
     pub levels: Vec<String>,
+    /// What is equal within the matched sets of answers that are compared.
+    pub matched_by: Vec<String>,
     pub categories: Vec<CategoryByFactor>,
 }
 
@@ -73,8 +78,8 @@ impl Writer<'_> {
     ) -> Vec<DetectionByFactor> {
         let mut results = Vec::new();
         for factor in factors.iter().filter(|factor| *factor != truth) {
-            let Some(found) = self.detected_by(asked, factor) else { continue };
-            let result = of_factor(&asked.id, factor, &found);
+            let Some((matched_by, found)) = self.detected_by(asked, factor) else { continue };
+            let result = of_factor(&asked.id, factor, matched_by, &found);
             let shown = self.naming.factor(factor);
             self.heading(3, &format!("d′ by {shown}"), &format!("d′ par {shown}"));
             let tests = self.compared_table(asked, truth, &result);
@@ -104,19 +109,25 @@ impl Writer<'_> {
         results
     }
 
-    /// Detection among the answers of each level; none where a level has too few categories.
-    fn detected_by(
-        &self,
-        asked: &AskedQuestion<'_>,
-        factor: &str,
-    ) -> Option<Vec<(String, Detection)>> {
+    /// Detection among the matched answers of each level, and what they are matched by; none where a level has too few
+    /// categories.
+    fn detected_by(&self, asked: &AskedQuestion<'_>, factor: &str) -> Option<DetectedByLevel> {
+        let measure = Measure::of_question(self.export, asked, self.language())?;
+        let of_measure = measure.factor(self.export, factor, &[]);
+        let matching = measure.matching(self.export, &of_measure);
+        let matched: HashSet<usize> =
+            matching.rows().into_iter().map(|row| measure.trial[row]).collect();
+        let answers = self.export.answers_to(&asked.id);
         let factor = self.factor_of_answers(asked, factor);
         let detected = |(code, level): (usize, &String)| {
-            let found = self.detected(asked, |place| factor.codes[place] as usize == code)?;
-            Some((level.clone(), found))
+            let is_at = |place: usize| factor.codes[place] as usize == code;
+            let is_counted = |place: usize| is_at(place) && matched.contains(&answers[place].trial);
+            Some((level.clone(), self.detected(asked, is_counted)?))
         };
         let levels = &factor.levels;
-        (levels.len() > 1).then(|| levels.iter().enumerate().map(detected).collect()).flatten()
+        let found: Option<Vec<(String, Detection)>> =
+            (levels.len() > 1).then(|| levels.iter().enumerate().map(detected).collect()).flatten();
+        Some((matching.by, found?))
     }
 
     fn levels_table(
@@ -211,7 +222,12 @@ impl Writer<'_> {
 }
 
 /// Every category that was shown at each level.
-fn of_factor(response: &str, factor: &str, found: &[(String, Detection)]) -> DetectionByFactor {
+fn of_factor(
+    response: &str,
+    factor: &str,
+    matched_by: Vec<String>,
+    found: &[(String, Detection)],
+) -> DetectionByFactor {
     let levels: Vec<String> = found.iter().map(|(level, _)| level.clone()).collect();
     let of_category = |category: &str| -> Option<CategoryByFactor> {
         let at: Vec<&DetectedCategory> = found
@@ -222,7 +238,8 @@ fn of_factor(response: &str, factor: &str, found: &[(String, Detection)]) -> Det
             let compared = |what: Compared| {
                 let blocks = blocks(&levels, &at, what.of);
                 let call = |design, test| {
-                    let call = Call::new(design, test).text(what.name).text(response);
+                    let call = Call::new(design, test).list(&matched_by);
+                    let call = call.text(what.name).text(response);
                     call.text(category).text(factor).list(&levels)
                 };
                 person_level::of_blocks(&blocks, WithinDesigns::DETECTION, call)
@@ -240,6 +257,7 @@ fn of_factor(response: &str, factor: &str, found: &[(String, Detection)]) -> Det
     DetectionByFactor {
         factor: factor.to_owned(),
         categories: categories.filter_map(|own| of_category(&own.category)).collect(),
+        matched_by: matched_by.clone(),
         levels,
     }
 }

@@ -1,10 +1,9 @@
 //! The hypotheses of the study file: in short, and one by one.
 
 use mimique_report::document::{Block, slug};
-use mimique_stats::Adjustment;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
-use crate::hypothesis::decision::decision;
+use crate::hypothesis::family;
 use crate::hypothesis::other_clips::OtherClipsTests;
 use crate::hypothesis::reading;
 use crate::hypothesis::{HypothesisResult, is_two_way, test_hypothesis};
@@ -29,13 +28,16 @@ pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
             )
         })
         .collect();
-    let p: Vec<Option<f64>> = results.iter().map(|result| result.p).collect();
-    let tested = p.iter().flatten().count();
-    for (result, corrected) in results.iter_mut().zip(Adjustment::Holm.apply(&p)) {
+    let difference = |result: &HypothesisResult| result.equivalence.as_ref()?.decides.p_difference;
+    let p: Vec<[Option<f64>; 2]> =
+        results.iter().map(|result| [result.p, difference(result)]).collect();
+    let tested = results.iter().filter(|result| result.p.is_some()).count();
+    for (result, [corrected, difference]) in results.iter_mut().zip(family::corrected(&p)) {
         result.p_holm_over_hypotheses = corrected;
-        if let (Some(corrected), true) = (corrected, tested > 1) {
+        result.p_difference_holm_over_hypotheses = difference;
+        if corrected.is_some() && tested > 1 {
             let language = writer.naming.language;
-            let first = reading::over_hypotheses(language, decision(result), corrected, tested);
+            let first = reading::over_hypotheses(language, result, tested);
             result.reading = format!("{first} {}", result.reading);
         }
     }

@@ -253,7 +253,7 @@ impl Writer<'_> {
             (false, true) if !recognition => {
                 let x = as_numbers(factor);
                 let trials = TestLine::spearman(&x, &measure.numbers(), &Unit::Trials);
-                [trials, person_level::correlation_within_people(&x, measure)]
+                [trials, person_level::correlation_with_levels(self.export, measure, factor)]
             }
             (false, _) => {
                 let people = person_level::within(self.export, measure, factor);

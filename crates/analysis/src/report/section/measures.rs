@@ -42,14 +42,22 @@ impl Writer<'_> {
             if factor.levels.len() < 2 {
                 continue;
             }
-            let rows: Vec<(String, Vec<f64>)> = values_by_level(measure, &factor)
+            let (matched, factor) = measure.matched(self.export, &factor);
+            let rows: Vec<(String, Vec<f64>)> = values_by_level(&matched, &factor)
                 .into_iter()
                 .map(|(level, values)| (self.naming.level(name, &level), values))
                 .collect();
-            let caption = language.pick(
-                format!("All answers by {}", self.naming.factor(name)),
-                format!("Toutes les réponses par {}", self.naming.factor(name)),
-            );
+            let shown = self.naming.factor(name);
+            let caption = match matched.values.len() == measure.values.len() {
+                true => language.pick(
+                    format!("All answers by {shown}"),
+                    format!("Toutes les réponses par {shown}"),
+                ),
+                false => language.pick(
+                    format!("Compared answers by {shown}"),
+                    format!("Réponses comparées par {shown}"),
+                ),
+            };
             let id = format!("{}-by-{}", slug(&measure.id), slug(name));
             let drawing = match measure.scale {
                 Some((first, last)) if last - first <= 10 => {
@@ -129,6 +137,8 @@ impl Writer<'_> {
             )));
         }
         let words = reading::comparison(&self.naming, &result, &measure.label);
+        let unmatched = reading::unmatched(&self.naming, &result.matching);
+        self.blocks.extend(unmatched.map(Block::Paragraph));
         self.blocks.push(Block::Reading(words));
         let id = format!("{}-by-{}", slug(&measure.id), slug(name));
         if self.factors.first() == Some(name) {
@@ -193,6 +203,7 @@ impl Writer<'_> {
         if measure.kind != MeasureKind::Recognition {
             return tables::descriptions(&self.naming, id, caption, result);
         }
+        let (measure, factor) = &measure.at(factor, &result.matching.rows());
         let share = |code: usize| {
             let share = self.shares_by(measure, |i| factor.codes[i] as usize == code);
             (factor.levels[code].clone(), share)

@@ -36,7 +36,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::hypothesis::HypothesisResult;
 use crate::mimicry::tables::FaceTables;
-use crate::naming::Naming;
+use crate::naming::{Naming, people_counted};
 use crate::report::preview::Preview;
 use crate::report::replay;
 use crate::report::results::Results;
@@ -45,6 +45,7 @@ use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 use crate::trials::measure::Measure;
 use crate::trials::stimulus_measures::StimulusMeasures;
+use crate::trials::versions::OtherVersion;
 
 /// Levels beyond which a column is no factor that people compare.
 pub(crate) const MOST_LEVELS: usize = 12;
@@ -73,6 +74,8 @@ pub(crate) struct Writer<'a> {
     pub stimuli: Option<&'a StimulusMeasures>,
     /// What was measured of participants' faces, where tables of it are given.
     pub faces_measured: Option<&'a FaceTables>,
+    /// Versions of the study that were served, other than this file.
+    pub other_versions: &'a [OtherVersion],
     /// Where single clips are seen.
     pub preview: Option<Preview<'a>>,
 }
@@ -82,6 +85,7 @@ pub(crate) struct Writer<'a> {
 pub(crate) struct Beside<'a> {
     pub stimuli: Option<&'a StimulusMeasures>,
     pub faces: Option<&'a FaceTables>,
+    pub versions: &'a [OtherVersion],
 }
 
 /// Writes all sections.
@@ -103,11 +107,13 @@ pub(crate) fn write(
             language: language.code(),
             flow: Some(&export.flow),
             people: &export.people,
+            other_versions: beside.versions,
             ..Results::default()
         },
         factors: factors_in_use(export, study),
         stimuli: beside.stimuli,
         faces_measured: beside.faces,
+        other_versions: beside.versions,
         preview,
     };
     let asked = export.questions(study).into_iter();
@@ -208,20 +214,17 @@ fn of_measures<'a>(
 /// Title and subtitle of the report.
 fn heading(export: &Export, study: &Study, language: Language) -> (String, String) {
     let title = study.study_metadata.title.in_language(language.code()).to_owned();
+    let people = people_counted(language, export.flow.people_used);
+    let trials =
+        language.counted(export.flow.trials_used, ["trial", "trials"], ["essai", "essais"]);
     let subtitle = language.pick(
         format!(
-            "Results of the study {}, version {}: {} people, {} trials.",
-            study.id,
-            study.study_metadata.version,
-            export.flow.people_used,
-            export.flow.trials_used
+            "Results of the study {}, version {}: {people}, {trials}.",
+            study.id, study.study_metadata.version
         ),
         format!(
-            "Résultats de l’étude {}, version {} : {} personnes, {} essais.",
-            study.id,
-            study.study_metadata.version,
-            export.flow.people_used,
-            export.flow.trials_used
+            "Résultats de l’étude {}, version {} : {people}, {trials}.",
+            study.id, study.study_metadata.version
         ),
     );
     (title, subtitle)

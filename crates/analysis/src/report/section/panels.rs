@@ -72,7 +72,8 @@ impl Writer<'_> {
             self.screening(&id, screening);
         }
         let all = measure.factor(self.export, &block.compare, &[]);
-        let rows: Vec<(String, Vec<f64>)> = values_by_level(measure, &all)
+        let (matched, matched_factor) = measure.matched(self.export, &all);
+        let rows: Vec<(String, Vec<f64>)> = values_by_level(&matched, &matched_factor)
             .into_iter()
             .map(|(level, values)| (self.condition(block, &level), values))
             .collect();

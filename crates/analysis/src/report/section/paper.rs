@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 
 use mimique_locale::Language;
 use mimique_report::document::Block;
-use mimique_stats::Outcome;
+use mimique_stats::{EquivalenceVerdict, Outcome};
 use mimique_study::KindOfQuestion as _;
 
-use crate::hypothesis::decision::{EffectUnit, decision, effects};
+use crate::hypothesis::decision::{Decision, EffectUnit, deciding_p_values, decision, effects};
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::{HypothesisResult, deciding_test, reading};
+use crate::naming::people_counted;
 use crate::report::results::AboutPeople;
 use crate::report::section::Writer;
 use crate::trials::rule::Rule;
@@ -40,12 +41,12 @@ impl Writer<'_> {
         let flow = &self.export.flow;
         let mut sentences = vec![match flow.people - flow.people_used {
             0 => language.pick(
-                format!("{} people took part.", flow.people),
-                format!("{} personnes ont participé.", flow.people),
+                format!("{} took part.", people_counted(language, flow.people)),
+                format!("{} participé.", language.counted(flow.people, ["", ""], ["personne a", "personnes ont"])),
             ),
             out => language.pick(
-                format!("{} people took part; {out} were excluded by rules fixed beforehand ({}), which leaves {}.", flow.people, Rule::listed(&flow.rules, language), flow.people_used),
-                format!("{} personnes ont participé ; {out} ont été exclues par des règles fixées à l’avance ({}), ce qui en laisse {}.", flow.people, Rule::listed(&flow.rules, language), flow.people_used),
+                format!("{} took part; {out} {} excluded by rules fixed beforehand ({}), which leaves {}.", people_counted(language, flow.people), if out == 1 { "was" } else { "were" }, Rule::listed(&flow.rules, language), flow.people_used),
+                format!("{} participé ; {} par des règles fixées à l’avance ({}), ce qui en laisse {}.", language.counted(flow.people, ["", ""], ["personne a", "personnes ont"]), language.counted(out, ["", ""], ["a été exclue", "ont été exclues"]), Rule::listed(&flow.rules, language), flow.people_used),
             ),
         }];
         sentences.extend(self.about_people_in_paper());
@@ -158,7 +159,11 @@ impl Writer<'_> {
         let statement = result.statement.trim_end_matches(['.', ' ']);
         let found = reading::decision(language, decision(result));
         let mut parts = vec![found.to_owned()];
-        let p = result.p_holm_over_hypotheses.or(result.p).map(|p| p_in_paper(language, p));
+        let p = deciding_p_values(result).into_iter();
+        let p = p.map(|(of, p)| {
+            format!("{}{}", p_in_paper(language, p), reading::supports(language, of))
+        });
+        let p: Vec<String> = p.collect();
         let model = result.other_clips.as_ref().filter(|found| found.decides);
         if let Some(Some(Outcome::Ok(model))) = model.map(|found| &found.mixed_model) {
             let ratio = language.fixed(model.likelihood_ratio, 2);
@@ -166,6 +171,12 @@ impl Writer<'_> {
                 format!("cumulative link mixed model, χ²({}) = {ratio}", model.df),
                 format!("modèle mixte à lien cumulatif, χ²({}) = {ratio}", model.df),
             ));
+            parts.extend(p);
+        } else if decision(result) == Decision::Equivalence(EquivalenceVerdict::Different) {
+            // The statistic of equivalence does not belong to the p of the difference.
+            let test = "two-sided test of the difference";
+            parts.push(language.pick(test, "test bilatéral de la différence").to_owned());
+            parts.push(format!("n = {}", result.recommended.people));
             parts.extend(p);
         } else if let Some(Outcome::Ok(line)) = deciding_test(&result.recommended) {
             parts.extend(test_in_paper(language, line, p));
@@ -209,7 +220,7 @@ impl Writer<'_> {
 }
 
 /// Test, statistic, p and effect size.
-fn test_in_paper(language: Language, line: &TestLine, p: Option<String>) -> Vec<String> {
+fn test_in_paper(language: Language, line: &TestLine, p: Vec<String>) -> Vec<String> {
     let mut parts = vec![
         line.names.in_words[language.pick(0, 1)].to_owned(),
         format!(

@@ -10,6 +10,7 @@ use crate::report::figure::flow_chart::flow_chart;
 use crate::report::results::AboutPeople;
 use crate::report::section::{MOST_LEVELS, Writer};
 use crate::trials::rule::Rule;
+use crate::trials::versions::{OtherVersion, Part};
 
 impl Writer<'_> {
     pub(crate) fn participants(&mut self) {
@@ -23,10 +24,21 @@ impl Writer<'_> {
             );
         } else {
             let rules = Rule::listed(&self.export.flow.rules, language);
-            self.blocks.push(Block::Paragraph(language.pick(
-                format!("Rules of exclusion, fixed in the study file: {rules}."),
-                format!("Règles d’exclusion, fixées dans le fichier de l’étude : {rules}."),
-            )));
+            let differ = |version: &OtherVersion| match &version.differences {
+                Some(differences) => differences.iter().any(|own| own.of == Part::Rule),
+                None => true,
+            };
+            let words = match self.other_versions.iter().any(differ) {
+                true => language.pick(
+                    format!("Rules of exclusion in the study file of this report, not in every file that participants were served (see In short): {rules}."),
+                    format!("Règles d’exclusion du fichier d’étude de ce rapport, et non de tous les fichiers servis aux participants (voir En bref) : {rules}."),
+                ),
+                false => language.pick(
+                    format!("Rules of exclusion, fixed in the study file: {rules}."),
+                    format!("Règles d’exclusion, fixées dans le fichier de l’étude : {rules}."),
+                ),
+            };
+            self.blocks.push(Block::Paragraph(words));
         }
         self.figure(flow);
         let caption = match self.study.conditions().is_empty() {

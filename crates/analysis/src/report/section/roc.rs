@@ -7,6 +7,7 @@ use mimique_stats::{CategoryRoc, Numbers, Roc, roc};
 use mimique_study::KindOfQuestion as _;
 use serde::Serialize;
 
+use crate::naming::people_counted;
 use crate::report::figure::roc_curves;
 use crate::report::section::Writer;
 use crate::trials::asked_question::AskedQuestion;
@@ -75,8 +76,14 @@ impl Writer<'_> {
         let language = self.language();
         let people = found.participants;
         let caption = language.pick(
-            format!("Area below the ROC curve of each category ({people} people)"),
-            format!("Aire sous la courbe ROC de chaque catégorie ({people} personnes)"),
+            format!(
+                "Area below the ROC curve of each category ({})",
+                people_counted(language, people)
+            ),
+            format!(
+                "Aire sous la courbe ROC de chaque catégorie ({})",
+                people_counted(language, people)
+            ),
         );
         let heading = language.pick(
             [

@@ -50,3 +50,26 @@ pub fn answered(
     }
     text
 }
+
+/// The same export with other cells in a column, where `change` returns one.
+pub fn cells_changed(
+    csv: &str,
+    column: &str,
+    change: impl Fn(&dyn Fn(&str) -> String) -> Option<String>,
+) -> String {
+    let mut lines = csv.lines();
+    let heading = lines.next().unwrap();
+    let names: Vec<&str> = heading.split(',').collect();
+    let place = |name: &str| names.iter().position(|own| *own == name).unwrap();
+    let changed = place(column);
+    let mut text = heading.to_owned() + "\n";
+    for line in lines {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Some(own) = change(&|name| cells[place(name)].clone()) {
+            cells[changed] = own;
+        }
+        text += &cells.join(",");
+        text.push('\n');
+    }
+    text
+}
