@@ -102,11 +102,11 @@ impl Writer<'_> {
         let caption = self.language().pick(
             format!(
                 "Detection of each category among all others ({})",
-                people_counted(language, result.people)
+                people_counted(self.language(), result.people)
             ),
             format!(
                 "Détection de chaque catégorie parmi les autres ({})",
-                people_counted(language, result.people)
+                people_counted(self.language(), result.people)
             ),
         );
         let id = format!("{}-detection", slug(&result.response));

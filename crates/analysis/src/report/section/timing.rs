@@ -27,7 +27,8 @@ impl Writer<'_> {
             && self.of_pair(asked, What::Rt, &first).is_none()
         {
             let factor = measure.factor(self.export, &first, &[]);
-            let rows: Vec<(String, Vec<f64>)> = values_by_level(&measure, &factor)
+            let (matched, codes) = measure.matched(self.export, &factor);
+            let rows: Vec<(String, Vec<f64>)> = values_by_level(&matched, &codes)
                 .into_iter()
                 .map(|(level, values)| (self.naming.level(&first, &level), values))
                 .collect();
@@ -39,6 +40,8 @@ impl Writer<'_> {
             if factor.levels.len() > 1 && measure.kind == MeasureKind::ResponseTime {
                 let result = within(self.export, &measure, &factor);
                 let words = reading::comparison(&self.naming, &result, &measure.label);
+                let unmatched = reading::unmatched(&self.naming, &result.matching);
+                self.blocks.extend(unmatched.map(Block::Paragraph));
                 self.blocks.push(Block::Reading(words));
                 self.results.comparisons.push(result);
             }
