@@ -88,7 +88,12 @@ impl Measure {
             let sets = Sets::of(&shown, keys);
             sets.per_person(&shown, &sets.complete(&shown, levels, |_| true)).len()
         };
-        let crossed = self.crossed_places(export, factor);
+        let mut crossed = self.crossed_places(export, factor);
+        crossed.retain(|place| {
+            let mut levels = shown.iter().map(|own| own.trial.levels[*place].as_deref());
+            let first = levels.next().flatten();
+            levels.any(|level| level != first)
+        });
         let none = MatchingKeys { segment: false, factors: Vec::new() };
         let least = people(&none) * 9;
         let segments =
