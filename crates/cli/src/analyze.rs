@@ -81,7 +81,7 @@ fn served_versions(args: &Args) -> anyhow::Result<Vec<ServedVersion>> {
         paths.extend(is_version.then_some(path));
     }
     paths.sort();
-    let read = |path: &PathBuf| {
+    let read = |path: &PathBuf| -> anyhow::Result<ServedVersion> {
         let place = || path.display().to_string();
         let text = std::fs::read_to_string(path)
             .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
