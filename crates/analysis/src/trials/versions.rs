@@ -18,6 +18,7 @@ use crate::trials::error::ExportError;
 pub struct ServedVersion {
     /// SHA-256 of its canonical text.
     pub config_hash: String,
+    /// The file, read.
     pub study: Study,
 }
 
