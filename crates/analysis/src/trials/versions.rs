@@ -105,8 +105,8 @@ pub(crate) fn other_versions(
     Ok(others)
 }
 
-/// Whether rows of a version could be answers to the study: a trial of one of its clips, with one of its questions.
-/// Rows without a trial say nothing.
+/// Whether rows of a version could be answers to the study: at least half of them are of one of its clips, with one of its
+/// questions. Studies of one laboratory share some clips and questions. Rows without a trial say nothing.
 fn has_trials_of(table: &Table, study: &Study, hash: &str) -> bool {
     let [own, kind, stimulus, response] = ["config_hash", "trial_type", "stimulus", "response_id"]
         .map(|name| Column::of(table, name));
@@ -114,7 +114,7 @@ fn has_trials_of(table: &Table, study: &Study, hash: &str) -> bool {
     let clips: BTreeSet<&str> = clips.iter().map(|clip| clip.id.as_str()).collect();
     let questions: BTreeSet<String> =
         study.all_questions().flat_map(Question::response_ids).collect();
-    let mut trials = 0;
+    let (mut trials, mut fitting) = (0, 0);
     for row in 0..table.rows() {
         if own.text(row) != Some(hash) || kind.text(row) != Some("trial") {
             continue;
@@ -122,11 +122,10 @@ fn has_trials_of(table: &Table, study: &Study, hash: &str) -> bool {
         trials += 1;
         let is_clip =
             stimulus.text(row).is_none_or(|clip| clips.is_empty() || clips.contains(clip));
-        if is_clip && response.text(row).is_some_and(|response| questions.contains(response)) {
-            return true;
-        }
+        let is_asked = response.text(row).is_some_and(|response| questions.contains(response));
+        fitting += usize::from(is_clip && is_asked);
     }
-    trials == 0
+    2 * fitting >= trials
 }
 
 fn differences(served: &Study, analysed: &Study) -> Vec<Difference> {

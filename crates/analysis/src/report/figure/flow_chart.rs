@@ -88,8 +88,10 @@ struct Step {
 }
 
 fn steps(language: Language, flow: &Flow) -> [Step; 4] {
-    let step = |count, english, french, left_out| {
-        let label = language.pick(english, french);
+    let step = |count, english: [&'static str; 2], french: [&'static str; 2], left_out| {
+        // English has the plural of 0, French the singular.
+        let is_many = language.pick(count != 1, count > 1);
+        let label = language.pick(english, french)[usize::from(is_many)];
         Step { count, label, left_out }
     };
     let people_left_out = people_left_out(language, flow);
@@ -102,10 +104,30 @@ fn steps(language: Language, flow: &Flow) -> [Step; 4] {
         )],
     };
     [
-        step(flow.people, "people with answers", "personnes avec des réponses", people_left_out),
-        step(flow.people_used, "people in the analysis", "personnes dans l’analyse", unread),
-        step(flow.trials, "trials they answered", "essais de ces personnes", trials_left_out),
-        step(flow.trials_used, "trials in the analysis", "essais dans l’analyse", Vec::new()),
+        step(
+            flow.people,
+            ["person with answers", "people with answers"],
+            ["personne avec des réponses", "personnes avec des réponses"],
+            people_left_out,
+        ),
+        step(
+            flow.people_used,
+            ["person in the analysis", "people in the analysis"],
+            ["personne dans l’analyse", "personnes dans l’analyse"],
+            unread,
+        ),
+        step(
+            flow.trials,
+            ["trial they answered", "trials they answered"],
+            ["essai de ces personnes", "essais de ces personnes"],
+            trials_left_out,
+        ),
+        step(
+            flow.trials_used,
+            ["trial in the analysis", "trials in the analysis"],
+            ["essai dans l’analyse", "essais dans l’analyse"],
+            Vec::new(),
+        ),
     ]
 }
 
