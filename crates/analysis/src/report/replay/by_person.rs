@@ -13,6 +13,15 @@ use crate::report::section::roc::of_people;
 /// Instants of a course from one check to the next: half a second.
 const INSTANTS: usize = (TRACE_HZ / 2.0) as usize;
 
+/// The answers of a level that are compared with those of the factor's other levels.
+struct AtLevel<'r> {
+    factor: &'r str,
+    /// The level alone, as scripts take it.
+    level: &'r [String; 1],
+    matched_by: &'r [String],
+    levels: &'r [String],
+}
+
 impl Collector {
     /// d' of each category, of all answers and by factors.
     pub(super) fn detection(&mut self, results: &Results<'_>) {
@@ -20,7 +29,7 @@ impl Collector {
             let key = format!("detection:{}", own.response);
             for category in &own.categories {
                 let key = format!("{key}:{}", category.category);
-                self.category(key, &own.response, ("", &[], None), own.people, category);
+                self.category(key, &own.response, None, own.people, category);
             }
             for by in &own.by {
                 for category in &by.categories {
@@ -28,10 +37,14 @@ impl Collector {
                     for (level, at) in category.at.iter() {
                         let levels = [level.to_owned()];
                         let people = at.each.0.len();
-                        let matched = Some((by.matched_by.as_slice(), by.levels.as_slice()));
-                        let of = (by.factor.as_str(), levels.as_slice(), matched);
+                        let of = AtLevel {
+                            factor: &by.factor,
+                            level: &levels,
+                            matched_by: &by.matched_by,
+                            levels: &by.levels,
+                        };
                         let key = format!("{key}:{level}");
-                        self.category(key, &own.response, of, people, &at.detection);
+                        self.category(key, &own.response, Some(of), people, &at.detection);
                     }
                     if let Some(compared) = &category.compared {
                         self.person_level(&format!("{key}:d'"), &compared.d_prime);
@@ -70,12 +83,12 @@ impl Collector {
         }
     }
 
-    /// d' of one category among the answers at some levels of a factor; of all where the factor has no name.
+    /// d' of one category among the answers at a level of a factor, or of all.
     fn category(
         &mut self,
         key: String,
         response: &str,
-        (factor, levels, matched): (&str, &[String], Option<(&[String], &[String])>),
+        at: Option<AtLevel<'_>>,
         all: usize,
         found: &CategoryDetection,
     ) {
@@ -87,10 +100,12 @@ impl Collector {
             return;
         }
         let call = Call::new(Design::Detection, Detection::NAMES.function);
-        let call = call.text(response).text(&found.category).text(factor).list(levels);
-        let call = match matched {
-            Some((by, all_levels)) => call.list(by).list(all_levels),
-            None => call,
+        let call = call.text(response).text(&found.category);
+        let call = match at {
+            None => call.text("").list(&[]),
+            Some(at) => {
+                call.text(at.factor).list(at.level).list(at.matched_by).list(at.levels)
+            }
         };
         let values = vec![
             ("statistic", t.statistic),
