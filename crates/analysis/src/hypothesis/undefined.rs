@@ -29,7 +29,7 @@ impl Why {
     /// In the middle of a sentence.
     pub(crate) fn words(&self, language: Language) -> String {
         match self {
-            Self::Statistic(undefined) => without_options(undefined.words(language), language),
+            Self::Statistic(undefined) => undefined.words(language),
             Self::NotTested(why) => why.words(language),
             Self::NoMatchedTrials => language
                 .pick(
@@ -48,16 +48,6 @@ impl Why {
             }
         }
     }
-}
-
-/// Without the remedy at the end where it is an option of the command line, which readers of a report do not have.
-fn without_options(mut words: String, language: Language) -> String {
-    if let Some(remedy) = words.rfind(language.pick("; ", " ; "))
-        && words[remedy..].contains("--")
-    {
-        words.truncate(remedy);
-    }
-    words
 }
 
 impl From<Undefined> for Why {

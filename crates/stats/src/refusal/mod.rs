@@ -4,6 +4,8 @@ mod unfit;
 
 use std::fmt;
 
+use mimique_locale::Language;
+
 pub use unfit::Unfit;
 
 /// Why an input cannot be tested. Its words name the column and what to do.
@@ -154,6 +156,31 @@ pub enum Refusal {
 impl Refusal {
     /// In English.
     pub fn english(&self) -> String {
+        let problem = self.problem(Language::English);
+        self.option().map_or_else(|| problem.clone(), |[option, _]| format!("{problem}; {option}"))
+    }
+
+    /// In the middle of a sentence of a report, whose reader has no command line: what is wrong, without the option that
+    /// helps.
+    pub fn problem(&self, language: Language) -> String {
+        match language {
+            Language::English => self.english_problem(),
+            Language::French => self.french_problem(),
+        }
+    }
+
+    /// The option of the command line that helps, in English and French.
+    fn option(&self) -> Option<[&'static str; 2]> {
+        match self {
+            Self::NotTwoLevels { .. } => {
+                Some(["choose two with --levels A,B", "choisissez-en deux par --levels A,B"])
+            }
+            Self::Unfit(why) => why.option(),
+            _ => None,
+        }
+    }
+
+    fn english_problem(&self) -> String {
         match self {
             Self::TooFewLevels { column, levels, rows, needed } => {
                 let found = match levels.as_slice() {
@@ -190,7 +217,7 @@ impl Refusal {
                 "column \"{column}\": the level \"{level}\" is named twice; name each level once"
             ),
             Self::NotTwoLevels { column, levels } => format!(
-                "column \"{column}\": {levels} levels, this test compares two; choose two with --levels A,B"
+                "column \"{column}\": {levels} levels, this test compares two"
             ),
             Self::RepeatedInBlock { column, block, group, level } => format!(
                 "column \"{column}\": \"{block}\" has two responses for {group} \"{level}\"; give one row per block and group, e.g. the mean of its rows"
@@ -222,6 +249,11 @@ impl Refusal {
 
     /// In French. Names of options stay as they are typed.
     pub fn french(&self) -> String {
+        let problem = self.problem(Language::French);
+        self.option().map_or_else(|| problem.clone(), |[_, option]| format!("{problem} ; {option}"))
+    }
+
+    fn french_problem(&self) -> String {
         match self {
             Self::TooFewLevels { column, levels, rows, needed } => {
                 let found = match levels.as_slice() {
@@ -260,7 +292,7 @@ impl Refusal {
                 "colonne « {column} » : le niveau « {level} » est nommé deux fois ; nommez chaque niveau une fois"
             ),
             Self::NotTwoLevels { column, levels } => format!(
-                "colonne « {column} » : {levels} niveaux, ce test en compare deux ; choisissez-en deux par --levels A,B"
+                "colonne « {column} » : {levels} niveaux, ce test en compare deux"
             ),
             Self::RepeatedInBlock { column, block, group, level } => format!(
                 "colonne « {column} » : « {block} » a deux réponses pour {group} « {level} » ; donnez une ligne par bloc et par groupe, par exemple la moyenne de ses lignes"

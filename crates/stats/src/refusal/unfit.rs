@@ -176,8 +176,25 @@ pub enum Unfit {
 }
 
 impl Unfit {
-    /// In English.
-    pub fn english(&self) -> String {
+    /// The option of the command line that helps, in English and French.
+    pub(super) fn option(&self) -> Option<[&'static str; 2]> {
+        Some(match self {
+            Self::Disconnected { .. } => [
+                "choose items with --items that answers join, or ask about pairs between them",
+                "choisissez par --items des éléments que des réponses relient, ou posez la question pour des paires entre eux",
+            ],
+            Self::OutsideRange { .. } => [
+                "give the range of answers with --range",
+                "donnez l’étendue des réponses par --range",
+            ],
+            Self::NameWhereNumber { .. } => ["take --level nominal", "prenez --level nominal"],
+            Self::LevelNotPositive { .. } => ["take --function normal", "prenez --function normal"],
+            _ => return None,
+        })
+    }
+
+    /// In English, without [`Unfit::option`].
+    pub(super) fn english(&self) -> String {
         match self {
             Self::ItemBesideItself { item, row } => format!(
                 "row {row}: \"{item}\" is compared with itself; give two items"
@@ -186,7 +203,7 @@ impl Unfit {
                 "column \"{column}\": row {row}: \"{word}\" is no answer about \"{left}\" and \"{right}\"; give left, right or same, or in all rows the name of the item that was chosen"
             ),
             Self::Disconnected { parts } => format!(
-                "no answer compares the items of {}; choose items with --items that answers join, or ask about pairs between them",
+                "no answer compares the items of {}",
                 in_parts(parts, ENGLISH, " with those of ")
             ),
             Self::TiesNotModelled { tied } => format!(
@@ -208,7 +225,7 @@ impl Unfit {
                 "column \"{column}\": {people} people have answered all questions, at least {needed} are needed"
             ),
             Self::OutsideRange { column, value, low, high } => format!(
-                "column \"{column}\": {value} is no answer from {low} to {high}; give the range of answers with --range"
+                "column \"{column}\": {value} is no answer from {low} to {high}"
             ),
             Self::NotARange { option, word } => format!(
                 "--{option}: \"{word}\" is not two numbers, the lower one first; give them as in --{option} 1,7"
@@ -217,7 +234,7 @@ impl Unfit {
                 "bounds {low} and {high} at level {alpha}: give a lower bound that is less than the upper one, and a level between 0 and 0.5"
             ),
             Self::NameWhereNumber { value, level } => format!(
-                "\"{value}\" is no number, which {level} values must be; take --level nominal"
+                "\"{value}\" is no number, which {level} values must be"
             ),
             Self::NotZeroOrOne { column, line, value } => format!(
                 "column \"{column}\": line {line}: {value} is neither 0 nor 1"
@@ -232,7 +249,7 @@ impl Unfit {
                 "row {row}: {correct} right answers of {n} at level {level}; give a level that is a number and no more right answers than answers"
             ),
             Self::LevelNotPositive { level } => format!(
-                "level {level} is below 0, where a Weibull function has no value; take --function normal"
+                "level {level} is below 0, where a Weibull function has no value"
             ),
             Self::TooManyRatings { column, ratings, most } => format!(
                 "column \"{column}\": {ratings} different ratings, of which each has a threshold; at most {most} are taken: round them to fewer steps, or take min-f"
@@ -252,8 +269,8 @@ impl Unfit {
         }
     }
 
-    /// In French.
-    pub fn french(&self) -> String {
+    /// In French, without [`Unfit::option`].
+    pub(super) fn french(&self) -> String {
         match self {
             Self::ItemBesideItself { item, row } => format!(
                 "ligne {row} : « {item} » est comparé à lui-même ; donnez deux éléments"
@@ -262,7 +279,7 @@ impl Unfit {
                 "colonne « {column} » : ligne {row} : « {word} » n’est pas une réponse au sujet de « {left} » et « {right} » ; donnez left, right ou same, ou dans toutes les lignes le nom de l’élément choisi"
             ),
             Self::Disconnected { parts } => format!(
-                "aucune réponse ne compare les éléments de {} ; choisissez par --items des éléments que des réponses relient, ou posez la question pour des paires entre eux",
+                "aucune réponse ne compare les éléments de {}",
                 in_parts(parts, FRENCH, " à ceux de ")
             ),
             Self::TiesNotModelled { tied } => format!(
@@ -284,7 +301,7 @@ impl Unfit {
                 "colonne « {column} » : {people} personnes ont répondu à toutes les questions, il en faut au moins {needed}"
             ),
             Self::OutsideRange { column, value, low, high } => format!(
-                "colonne « {column} » : {value} n’est pas une réponse de {low} à {high} ; donnez l’étendue des réponses par --range"
+                "colonne « {column} » : {value} n’est pas une réponse de {low} à {high}"
             ),
             Self::NotARange { option, word } => format!(
                 "--{option} : « {word} » n’est pas deux nombres, le plus petit d’abord ; donnez-les comme dans --{option} 1,7"
@@ -293,7 +310,7 @@ impl Unfit {
                 "bornes {low} et {high} au niveau {alpha} : donnez une borne inférieure plus petite que la supérieure, et un niveau entre 0 et 0,5"
             ),
             Self::NameWhereNumber { value, level } => format!(
-                "« {value} » n’est pas un nombre, ce que des valeurs de niveau {level} doivent être ; prenez --level nominal"
+                "« {value} » n’est pas un nombre, ce que des valeurs de niveau {level} doivent être"
             ),
             Self::NotZeroOrOne { column, line, value } => format!(
                 "colonne « {column} » : ligne {line} : {value} n’est ni 0 ni 1"
@@ -308,7 +325,7 @@ impl Unfit {
                 "ligne {row} : {correct} réponses justes sur {n} au niveau {level} ; donnez un niveau qui soit un nombre et pas plus de réponses justes que de réponses"
             ),
             Self::LevelNotPositive { level } => format!(
-                "le niveau {level} est inférieur à 0, où une fonction de Weibull n’a pas de valeur ; prenez --function normal"
+                "le niveau {level} est inférieur à 0, où une fonction de Weibull n’a pas de valeur"
             ),
             Self::TooManyRatings { column, ratings, most } => format!(
                 "colonne « {column} » : {ratings} notes différentes, chacune ayant son seuil ; {most} au plus sont prises : arrondissez-les à moins d’échelons, ou prenez min-f"

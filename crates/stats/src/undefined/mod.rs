@@ -132,9 +132,10 @@ impl Undefined {
 
     /// In the middle of a sentence of a report.
     pub fn words(&self, language: Language) -> String {
-        match language {
-            Language::English => self.english(),
-            Language::French => self.french(),
+        match (self, language) {
+            (Self::Refused(refusal), _) => refusal.problem(language),
+            (_, Language::English) => self.english(),
+            (_, Language::French) => self.french(),
         }
     }
 

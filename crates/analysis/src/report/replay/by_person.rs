@@ -103,9 +103,7 @@ impl Collector {
         let call = call.text(response).text(&found.category);
         let call = match at {
             None => call.text("").list(&[]),
-            Some(at) => {
-                call.text(at.factor).list(at.level).list(at.matched_by).list(at.levels)
-            }
+            Some(at) => call.text(at.factor).list(at.level).list(at.matched_by).list(at.levels),
         };
         let values = vec![
             ("statistic", t.statistic),
