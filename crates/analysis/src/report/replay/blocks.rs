@@ -127,8 +127,9 @@ impl Collector {
         for pair in &own.pairs {
             let key = format!("trace:{}:{}:{} | {}", own.response, own.factor, pair.a, pair.b);
             let call = |test| {
-                let call = Call::new(Design::Courses, test).text(&own.response);
-                call.text(&own.factor).text(&pair.a).text(&pair.b)
+                let call = Call::new(Design::Courses, test).list(&own.matched_by);
+                let call = call.text(&own.response).text(&own.factor).list(&own.all_levels);
+                call.text(&pair.a).text(&pair.b)
             };
             let clusters = match &pair.test {
                 Outcome::Ok(found) => found.clusters.as_slice(),

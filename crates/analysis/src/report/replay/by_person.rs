@@ -127,7 +127,8 @@ impl Collector {
                         values.extend([("low", low), ("high", high)]);
                     }
                     let call = Call::new(Design::Course, "mean_and_interval");
-                    let call = call.text(&own.response).text(&own.factor).text(&level.level);
+                    let call = call.list(&own.matched_by).text(&own.response).text(&own.factor);
+                    let call = call.list(&own.all_levels).text(&level.level);
                     let key = format!(
                         "trace:{}:{}:{}:{}",
                         own.response,

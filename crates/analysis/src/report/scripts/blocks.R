@@ -78,9 +78,9 @@ course <- function(y) {
   }
   courses[[y]]
 }
-of_course <- function(test, y, g, level, instant) {
+of_course <- function(test, matched, y, g, levels, level, instant) {
   v <- vapply(course(y), `[`, 0, instant)
-  keep <- !is.na(v) & trials[[g]] %in% level
+  keep <- !is.na(v) & trials[[g]] %in% level & is_matched(matched, y, g, levels)
   test(as.vector(tapply(v[keep], person[keep], mean)))
 }
 mean_and_interval <- function(values) {
@@ -90,16 +90,16 @@ mean_and_interval <- function(values) {
 }
 
 # Differences of people's mean courses between two levels, over the instants that everybody has.
-mean_courses <- function(y, g, level) {
-  own <- which(trials[[g]] %in% level & !is.na(trials[[paste0(y, ".trace")]]))
+mean_courses <- function(matched, y, g, levels, level) {
+  own <- which(trials[[g]] %in% level & !is.na(trials[[paste0(y, ".trace")]]) & is_matched(matched, y, g, levels))
   lapply(split(course(y)[own], person[own]), function(all) {
     n <- min(lengths(all))
     colMeans(do.call(rbind, lapply(all, `[`, seq_len(n))))
   })
 }
-of_courses <- function(test, y, g, a, b) {
-  of_a <- mean_courses(y, g, a)
-  of_b <- mean_courses(y, g, b)
+of_courses <- function(test, matched, y, g, levels, a, b) {
+  of_a <- mean_courses(matched, y, g, levels, a)
+  of_b <- mean_courses(matched, y, g, levels, b)
   people <- intersect(names(of_a), names(of_b))
   n <- min(lengths(of_a[people]), lengths(of_b[people]))
   test(do.call(rbind, lapply(people, function(who) of_a[[who]][seq_len(n)] - of_b[[who]][seq_len(n)])))

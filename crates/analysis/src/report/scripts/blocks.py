@@ -67,11 +67,11 @@ def of_faces(test, question, block, category, units, bins, duration):
 courses = {}
 
 
-def of_course(test, y, g, level, instant):
+def of_course(test, matched, y, g, levels, level, instant):
     """Where a rating that follows the clip stands at an instant (from 1), one mean per person."""
     if y not in courses:
         courses[y] = [[float(value) for value in cell.split()] for cell in columns[y + ".trace"]]
-    there = [(who, own[instant - 1]) for who, own, is_level in zip(person, courses[y], is_in(g, [level]))
+    there = [(who, own[instant - 1]) for who, own, is_level in zip(person, courses[y], is_in(g, [level]) & is_matched(matched, y, g, levels))
              if is_level and len(own) >= instant]
     who, values = zip(*there)
     _, means = means_by(who, ["all"] * len(who), values, ["all"])
@@ -85,8 +85,8 @@ def mean_and_interval(values):
     return dict(mean=mean, low=mean - reach, high=mean + reach, n=n)
 
 
-def mean_courses(y, g, level):
-    own = is_in(g, [level]) & (columns[y + ".trace"] != "")
+def mean_courses(matched, y, g, levels, level):
+    own = is_in(g, [level]) & (columns[y + ".trace"] != "") & is_matched(matched, y, g, levels)
     people = {}
     for who, cell in zip(person[own], columns[y + ".trace"][own]):
         people.setdefault(who, []).append([float(value) for value in cell.split()])
@@ -94,9 +94,9 @@ def mean_courses(y, g, level):
     return {who: np.mean([one[: shortest[who]] for one in all], axis=0) for who, all in people.items()}
 
 
-def of_courses(test, y, g, a, b):
+def of_courses(test, matched, y, g, levels, a, b):
     """Differences of people's mean courses between two levels, over the instants that everybody has."""
-    of_a, of_b = mean_courses(y, g, a), mean_courses(y, g, b)
+    of_a, of_b = (mean_courses(matched, y, g, levels, level) for level in (a, b))
     people = [who for who in of_a if who in of_b]
     n = min((min(len(of_a[who]), len(of_b[who])) for who in people), default=0)
     return test(np.array([of_a[who][:n] - of_b[who][:n] for who in people]))

@@ -18,6 +18,10 @@ use crate::trials::measure::Measure;
 pub(crate) struct MeanTraces {
     pub response: String,
     pub factor: String,
+    /// What is equal within the matched sets of answers whose courses are averaged.
+    pub matched_by: Vec<String>,
+    /// Every level of the factor: a matched set has an answer at each.
+    pub all_levels: Vec<String>,
     /// From one value of a course to the next, seconds.
     pub step_seconds: f64,
     pub levels: Vec<MeanTrace>,
@@ -43,7 +47,13 @@ impl Writer<'_> {
         let has_course =
             self.export.answers_to(&measure.id).iter().any(|answer| answer.trace.is_some());
         let Some(name) = factors.first().filter(|_| has_course) else { return };
-        let factor = measure.factor(self.export, name, &[]);
+        let mut factor = measure.factor(self.export, name, &[]);
+        let matching = measure.matching(self.export, &factor);
+        for (code, set) in factor.codes.iter_mut().zip(&matching.set_of_row) {
+            if set.is_none() {
+                *code = Factor::MISSING;
+            }
+        }
         let courses: Vec<PersonCourses> =
             (0..factor.levels.len()).map(|level| self.courses(measure, &factor, level)).collect();
         let of_levels = || factor.levels.iter().zip(&courses);
@@ -68,9 +78,16 @@ impl Writer<'_> {
         let drawing = figure::traces(language, &id, &caption, 1.0 / TRACE_HZ, &lines, &spans);
         self.figure(drawing);
         self.trace_tests(measure, name, &pairs);
-        let (response, factor) = (measure.id.clone(), name.clone());
-        let step_seconds = 1.0 / TRACE_HZ;
-        self.results.traces.push(MeanTraces { response, factor, step_seconds, levels, pairs });
+        let response = measure.id.clone();
+        self.results.traces.push(MeanTraces {
+            response,
+            factor: factor.name,
+            matched_by: matching.by,
+            all_levels: factor.levels,
+            step_seconds: 1.0 / TRACE_HZ,
+            levels,
+            pairs,
+        });
     }
 
     /// The clip of each level that has one alone.
