@@ -1,23 +1,28 @@
 //! Whether the rules exclude more trials at one level of a factor than at another.
 //!
 //! The unit is the participant: the share of that participant's trials that was excluded at each level, compared by an
-//! exact paired Wilcoxon test of two levels or by Friedman's test of more.
+//! exact paired Wilcoxon test of two levels or by Friedman's test of more; between conditions, the share of all trials by
+//! Kruskal and Wallis' test.
 
 use mimique_stats::{
-    Adjustment, Blocks, Friedman, Labelled, Outcome, WilcoxonOptions, friedman, wilcoxon,
+    Adjustment, Blocks, Factor, Friedman, Labelled, Numbers, Outcome, WilcoxonOptions, friedman,
+    kruskal_wallis, wilcoxon,
 };
+use mimique_study::columns::ASSIGNED_CONDITION;
 use serde::Serialize;
 
 use crate::trials::export::{Export, Trial};
 
-/// How many trials are excluded at each level of a factor of the clips.
+/// How many trials are excluded at each level of a factor of the clips, or in each assigned condition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ExclusionRates {
     pub factor: String,
     /// Excluded trials and all trials of each level.
     pub counts: Labelled<[usize; 2]>,
-    /// Participants who have trials at every level.
+    /// Participants who have trials at every level; between conditions, all.
     pub people: usize,
+    /// Whether the levels are those of different participants.
+    pub between_people: bool,
     /// Of the test that the rates are equal; `None` where it is not defined.
     pub p: Option<f64>,
     /// After Holm's correction over the factors that are looked at.
@@ -38,7 +43,10 @@ pub(crate) fn by_factors(export: &Export, factors: &[&str]) -> Vec<ExclusionRate
     let used = used.map(|(person, trial)| (person, trial, false));
     let excluded = export.excluded_trials.iter().map(|own| (own.person, &own.trial, true));
     let trials: Vec<(usize, &Trial, bool)> = used.chain(excluded).collect();
-    let rates = factors.iter().filter_map(|factor| by_factor(export, factor, &trials));
+    let rates = factors.iter().filter_map(|factor| match *factor {
+        ASSIGNED_CONDITION => by_condition(export, &trials),
+        factor => by_factor(export, factor, &trials),
+    });
     let mut rates: Vec<ExclusionRates> = rates.collect();
     let p: Vec<Option<f64>> = rates.iter().map(|own| own.p).collect();
     for (own, p_holm) in rates.iter_mut().zip(Adjustment::Holm.apply(&p)) {
@@ -93,6 +101,45 @@ fn by_factor(
         factor: factor.to_owned(),
         counts: Labelled::zip(&levels, counts),
         people,
+        between_people: false,
+        p,
+        p_holm: None,
+    })
+}
+
+fn by_condition(export: &Export, trials: &[(usize, &Trial, bool)]) -> Option<ExclusionRates> {
+    let (_, conditions) = export.about.iter().find(|(name, _)| name == ASSIGNED_CONDITION)?;
+    let mut of_people = vec![[0_usize; 2]; export.people.len()];
+    for (person, _, excluded) in trials {
+        of_people[*person][0] += usize::from(*excluded);
+        of_people[*person][1] += 1;
+    }
+    let people = of_people.iter().zip(conditions).filter(|([_, all], _)| *all > 0);
+    let people: Vec<([usize; 2], Option<&str>)> =
+        people.map(|(own, condition)| (*own, condition.as_deref())).collect();
+    let condition =
+        Factor::from_cells(ASSIGNED_CONDITION, people.iter().map(|(_, own)| *own), |_| None);
+    if condition.levels.len() < 2 {
+        return None;
+    }
+    let mut counts = vec![[0_usize; 2]; condition.levels.len()];
+    for (&([excluded, all], _), &code) in people.iter().zip(&condition.codes) {
+        if let Some(own) = counts.get_mut(code as usize) {
+            own[0] += excluded;
+            own[1] += all;
+        }
+    }
+    let share = |([excluded, all], _): &([usize; 2], Option<&str>)| *excluded as f64 / *all as f64;
+    let rates = Numbers { name: "excluded".to_owned(), values: people.iter().map(share).collect() };
+    let p = match kruskal_wallis(&rates, &condition) {
+        Ok(Outcome::Ok(found)) => Some(found.p_value),
+        _ => None,
+    };
+    Some(ExclusionRates {
+        factor: ASSIGNED_CONDITION.to_owned(),
+        counts: Labelled::zip(&condition.levels, counts),
+        people: people.len(),
+        between_people: true,
         p,
         p_holm: None,
     })

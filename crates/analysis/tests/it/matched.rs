@@ -9,7 +9,7 @@ use mimique_test_support::Random;
 use serde_json::Value;
 
 use crate::support::planted::{answered, cells_changed};
-use crate::support::{Raters, demo_study, export};
+use crate::support::{Raters, demo_study, export, study_in_conditions};
 
 const PEOPLE: usize = 40;
 
@@ -127,6 +127,32 @@ fn equal_exclusions_are_no_reason_for_a_warning() {
     let screen = first_screen(&report);
     assert!(!screen.contains("more often at some levels of method"), "{screen}");
     assert!(results(&report)["exclusion_rates"][0]["p_holm"].as_f64().is_none_or(|p| p > 0.05));
+}
+
+/// A rule that excludes trials in one condition only is named where it cannot be missed.
+#[test]
+fn unequal_exclusion_between_conditions_is_a_warning() {
+    let study = study_in_conditions();
+    let csv = export(&study, &Raters { people: PEOPLE, effect: 0.0, seed: 31 });
+    let condition = "assigned_condition";
+    let csv = late(&csv, |cell| cell(condition) == "rested" && cell("expression") == "joy");
+    for (language, words) in [
+        (Language::English, "more often in some conditions than in others: "),
+        (
+            Language::French,
+            "plus souvent des essais dans certaines conditions que dans d’autres : ",
+        ),
+    ] {
+        let report = report(&study, &csv, language);
+        let results = results(&report);
+        let rates = results["exclusion_rates"].as_array().unwrap();
+        let own = rates.iter().find(|own| own["factor"] == condition).unwrap();
+        assert_eq!(own["between_people"], true);
+        assert!(own["p_holm"].as_f64().unwrap() < 0.001, "{own}");
+        assert_eq!(own["counts"]["10"][0], 0, "{own}");
+        let screen = first_screen(&report);
+        assert!(screen.contains(words), "{screen}");
+    }
 }
 
 /// Where each participant sees every segment by one method only, segments cannot be matched: the methods are compared all

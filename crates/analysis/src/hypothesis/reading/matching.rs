@@ -66,6 +66,12 @@ pub(crate) fn unequal_exclusion(naming: &Naming<'_>, rates: &ExclusionRates, p: 
     let levels: Vec<String> = levels.collect();
     let levels = levels.join(", ");
     let p = language.p(p);
+    if rates.between_people {
+        return language.pick(
+            format!("The rules exclude trials more often in some conditions than in others: {levels}; {p}, one exclusion rate per participant. The conditions may differ because other trials remain: check the result without the rule."),
+            format!("Les règles excluent plus souvent des essais dans certaines conditions que dans d’autres : {levels} ; {p}, un taux d’exclusion par personne. Les conditions peuvent différer parce que d’autres essais restent : vérifiez le résultat sans la règle."),
+        );
+    }
     language.pick(
         format!("The rules exclude trials more often at some levels of {factor} than at others: {levels}; {p}, one exclusion rate per participant and level. Comparisons within participants use only what remains at every level, but the trials that remain may differ from those that were excluded: check the result without the rule."),
         format!("Les règles excluent plus souvent des essais à certains niveaux du facteur {factor} qu’à d’autres : {levels} ; {p}, un taux d’exclusion par personne et par niveau. Les comparaisons intra-individuelles n’utilisent que ce qui reste à tous les niveaux, mais les essais restants peuvent différer de ceux qui ont été exclus : vérifiez le résultat sans la règle."),
