@@ -208,7 +208,7 @@ impl Measure {
         }
         let people: Vec<usize> = of_person.keys().copied().collect();
         let means = of_person.into_values();
-        let means = means.map(|(sums, n)| sums.into_iter().map(|sum| sum / n).collect());
+        let means = means.map(|(sums, n)| sums.into_iter().map(|sum| rounded(sum / n)).collect());
         let means: Vec<Vec<f64>> = means.collect();
         let answering: BTreeSet<usize> = self.person.iter().copied().collect();
         PersonMeans { incomplete: answering.len() - people.len(), people, means }
@@ -372,6 +372,12 @@ impl Sums {
             .filter(|(_, cells)| cells.iter().all(|(_, count)| *count > 0.0))
             .map(|(row, cells)| (row, cells.iter().map(|(sum, count)| sum / count).collect()))
     }
+}
+
+/// A mean of means to ten decimals: ranks must not see the rounding errors of equal means.
+fn rounded(mean: f64) -> f64 {
+    const SCALE: f64 = 1e10;
+    (mean * SCALE).round() / SCALE
 }
 
 /// A factor's levels as numbers; if they are words, their places in order.

@@ -135,7 +135,7 @@ fn unequal_exclusion_between_conditions_is_a_warning() {
     let study = study_in_conditions();
     let csv = export(&study, &Raters { people: PEOPLE, effect: 0.0, seed: 31 });
     let condition = "assigned_condition";
-    let csv = late(&csv, |cell| cell(condition) == "rested" && cell("expression") == "joy");
+    let csv = late(&csv, |cell| cell("condition") == "rested" && cell("expression") == "joy");
     for (language, words) in [
         (Language::English, "more often in some conditions than in others: "),
         (

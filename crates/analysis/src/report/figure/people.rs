@@ -272,14 +272,11 @@ pub(crate) fn person_shares(
     svg.text((LEFT + RIGHT) / 2.0, bottom + 20.0, "small", Anchor::Middle, axis);
     let ends = (people.last().map_or(0.0, |p| share(p)), people.first().map_or(0.0, |p| share(p)));
     let (low, high) = (language.percent(ends.0), language.percent(ends.1));
+    let counted = people_counted(language, people.len());
     let alt = language.pick(
+        format!("One point with its interval each of {counted}, from {low} to {high}."),
         format!(
-            "One point with its interval each of {} people, from {low} to {high}.",
-            people.len()
-        ),
-        format!(
-            "Un point avec son intervalle pour chacune des {} personnes, de {low} à {high}.",
-            people.len()
+            "Un point avec son intervalle pour chaque personne ({counted}), de {low} à {high}."
         ),
     );
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }

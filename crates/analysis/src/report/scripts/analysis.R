@@ -40,10 +40,11 @@ set_means <- function(matched, y, g, levels, among = TRUE) {
 is_matched <- function(matched, y, g, levels, among = TRUE) {
   !is.na(number(y)) & trials[[g]] %in% levels & among & set_of(matched) %in% rownames(set_means(matched, y, g, levels, among))
 }
-# Mean of each person (rows) at each level (columns) over the matched sets; only people who have one.
+# Mean of each person (rows) at each level (columns) over the matched sets, to ten decimals, so that equal means have equal
+# ranks; only people who have one.
 person_means <- function(matched, y, g, levels) {
   m <- set_means(matched, y, g, levels)
-  rowsum(m, sub("\r.*", "", rownames(m))) / as.vector(table(sub("\r.*", "", rownames(m))))
+  round(rowsum(m, sub("\r.*", "", rownames(m))) / as.vector(table(sub("\r.*", "", rownames(m)))), 10)
 }
 
 # Mean of each person over all trials, and what the first of them says of the person.

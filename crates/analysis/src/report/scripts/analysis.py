@@ -83,11 +83,12 @@ def is_matched(matched, y, g, levels, among=True):
 
 
 def person_means(matched, y, g, levels):
-    """Mean of each person (rows) at each level (columns) over the matched sets; only people who have one."""
+    """Mean of each person (rows) at each level (columns) over the matched sets, to ten decimals, so that equal means have
+    equal ranks; only people who have one."""
     sets, m = set_means(matched, y, g, levels)
     who = np.array([own[0] for own in sets], dtype=object)
     people = sorted(set(who))
-    return people, np.array([m[who == one].sum(axis=0) / (who == one).sum() for one in people])
+    return people, np.array([np.round(m[who == one].sum(axis=0) / (who == one).sum(), 10) for one in people])
 
 
 def overall_means(y):
