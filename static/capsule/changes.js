@@ -9,7 +9,7 @@ let worker = null;
 
 /// The report of a study file (text): {files, summary}.
 async function computed(study) {
-  const [csv, stimuli] = await Promise.all([capsule.body("responses.csv"), capsule.body("stimuli.csv")]);
+  const [csv, stimuli, published] = await Promise.all(["responses.csv", "stimuli.csv", "study.json"].map((name) => capsule.body(name)));
   worker ??= new Worker(new URL("./report-worker.js", import.meta.url), { type: "module" });
   return new Promise((resolve, reject) => {
     worker.onmessage = ({ data }) => (data.error === undefined ? resolve(data) : reject(new Error(data.error)));
@@ -17,7 +17,7 @@ async function computed(study) {
       worker = null;
       reject(new Error(message));
     };
-    worker.postMessage({ csv, study, stimuli, preview: "../index.html", language: document.documentElement.lang });
+    worker.postMessage({ csv, study, published, stimuli, preview: "../index.html", language: document.documentElement.lang });
   });
 }
 
@@ -27,12 +27,14 @@ function changed(study, form) {
   const rules = { ...own.exclusions };
   for (const field of form.querySelectorAll("[data-rule]")) {
     const { rule } = field.dataset;
-    if (field.type === "checkbox") rules[rule] = field.checked;
+    if (field.type === "checkbox") {
+      if (field.checked || rule in rules) rules[rule] = field.checked;
+    }
     else if (field.value === "") delete rules[rule];
     else if (rule === "straightLining") rules[rule] = { ...rules[rule], longestRun: Number(field.value) };
     else rules[rule] = Number(field.value);
   }
-  own.exclusions = rules;
+  if (own.exclusions || Object.keys(rules).length > 0) own.exclusions = rules;
   for (const field of form.querySelectorAll("[data-hypothesis]")) {
     const hypothesis = own.hypotheses.find(({ id }) => id === field.dataset.hypothesis);
     hypothesis.test = field.value;

@@ -221,7 +221,7 @@ test("capsule: from the disk, without a network", { skip: unable, timeout: 600_0
     assert.deepEqual([changed.exclusions.lateFrameShare, changed.exclusions.straightLining.longestRun, changed.hypotheses[2].test], [0.01, 3, "mann-whitney"]);
     const out = join(folder, "native");
     const preview = "http://127.0.0.1/preview/demo";
-    mimique(["analyze", join(place, "data/responses.csv"), "--study", file, "--stimuli", join(place, "data/stimuli.csv"), "--preview-url", preview, "--out", out]);
+    mimique(["analyze", join(place, "data/responses.csv"), "--study", file, "--stimuli", join(place, "data/stimuli.csv"), "--preview-url", preview, "--versions", place, "--out", out]);
     alike(results, readFileSync(join(out, "results.json"), "utf8"));
     const native = readFileSync(join(out, "report.html"), "utf8").replaceAll(preview, "../index.html");
     assert.equal(await shown(), native, "the report, byte for byte");

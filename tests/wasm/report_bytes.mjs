@@ -25,7 +25,7 @@ let differing = 0;
 let worst = 0;
 for (const { name, csv, study, language, files, summary } of JSON.parse(readFileSync(cases, "utf8"))) {
   const begun = performance.now();
-  const report = module.analyze(csv, study, "", "../index.html", language);
+  const report = module.analyze(csv, study, "", "", "../index.html", language);
   const ms = performance.now() - begun;
   assert.deepEqual(report.files().sort(), Object.keys(files).sort(), `${name}: the same files`);
   assert.deepEqual(JSON.parse(report.summary()), summary, name);
@@ -45,5 +45,5 @@ for (const { name, csv, study, language, files, summary } of JSON.parse(readFile
 }
 console.log(`unrounded numbers are at most ${worst.toExponential(1)} apart`);
 // A table that is none is refused in words.
-assert.throws(() => module.analyze("a,b\n1\n", "{}", "", "", "en"), /./);
+assert.throws(() => module.analyze("a,b\n1\n", "{}", "", "", "", "en"), /./);
 assert.equal(differing, 0, `${differing} files differ`);

@@ -11,7 +11,7 @@ use mimique_analysis::{
 };
 use mimique_locale::{Language, counted, counted_as};
 use mimique_stats::Table;
-use mimique_study::{Study, config_hash};
+use mimique_study::{Study, answered_hash};
 
 use crate::report_folder;
 
@@ -88,7 +88,7 @@ fn served_versions(args: &Args) -> anyhow::Result<Vec<ServedVersion>> {
             .with_context(place)?;
         let file = mimique_study::parse(&text).with_context(place)?;
         let study = Study::from_value(&file).with_context(place)?;
-        Ok(ServedVersion { config_hash: config_hash(&file), study })
+        Ok(ServedVersion { config_hash: answered_hash(&file), study })
     };
     paths.iter().map(read).collect()
 }
@@ -117,7 +117,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
         .with_context(|| place(&args.study))?;
     let file = mimique_study::parse(&text).with_context(|| place(&args.study))?;
     let study = Study::from_value(&file).with_context(|| place(&args.study))?;
-    let hash = config_hash(&file);
+    let hash = answered_hash(&file);
     let served = served_versions(&args)?;
     let table = read_table(&args.export).with_context(|| place(&args.export))?;
     let stimuli = match &args.stimuli {

@@ -14,6 +14,7 @@ mod pair_drawing;
 mod pairs;
 mod practice;
 mod projection;
+mod published;
 mod question;
 mod study_file;
 pub mod text;
@@ -37,6 +38,7 @@ pub use pair_drawing::{DrawnPairs, OwnChoice, PairCount, PairCounts, PairRequest
 pub use pairs::AnswerOfPair;
 pub use practice::right_answers;
 pub use projection::StudyProjection;
+pub use published::{answered_hash, published};
 pub use question::{
     AttentionCheck, BestWorst, Chance, Choice, ChoiceView, Comparison, Condition, Grid,
     KindOfQuestion, LONG_TEXT, Likert, LongText, Matrix, MultipleChoice, NumberField, OptionOrder,

@@ -4,15 +4,15 @@
 //! the module here and those of the machine's library there, and differ in the last bit.
 //!
 //! ```js
-//! const report = analyze(csv, study, stimuli, "index.html", "en");
+//! const report = analyze(csv, study, "", stimuli, "index.html", "en");
 //! report.file("report.html"); // one of report.files()
 //! report.summary();           // {"people": [used, all], "trials": 480, "readings": [["H1", "..."]]}
 //! ```
 
-use mimique_analysis::{Report, ReportOptions, analyze_with};
+use mimique_analysis::{Report, ReportOptions, ServedVersion, StudyVersions, analyze_with};
 use mimique_locale::Language;
 use mimique_stats::Table;
-use mimique_study::Study;
+use mimique_study::{Study, answered_hash};
 use serde_json::json;
 use wasm_bindgen::prelude::*;
 
@@ -33,7 +33,8 @@ pub struct WebReport {
     report: Report,
 }
 
-/// Computes the report. `stimuli` is the table of stimuli, empty where there is none; `preview` the address to which
+/// Computes the report. `published` is the study file that was published, where `study` has other rules, else empty:
+/// the report then says what differs. `stimuli` is the table of stimuli, empty where there is none; `preview` the address to which
 /// figures lead, empty for none; `language` is `en` or `fr`.
 ///
 /// # Errors
@@ -42,11 +43,21 @@ pub struct WebReport {
 pub fn analyze(
     export: &str,
     study: &str,
+    published: &str,
     stimuli: &str,
     preview: &str,
     language: &str,
 ) -> Result<WebReport, JsError> {
-    let study = Study::from_text(study)?;
+    let read = |text: &str| -> Result<ServedVersion, JsError> {
+        let file = mimique_study::parse(text)?;
+        Ok(ServedVersion { config_hash: answered_hash(&file), study: Study::from_value(&file)? })
+    };
+    let ServedVersion { config_hash, study } = read(study)?;
+    let served = match published {
+        "" => Vec::new(),
+        text => vec![read(text)?],
+    };
+    let versions = StudyVersions { config_hash: Some(&config_hash), served: &served };
     let table = Table::parse(export)?;
     let stimuli = match stimuli {
         "" => None,
@@ -54,7 +65,7 @@ pub fn analyze(
     };
     let preview = (!preview.is_empty()).then_some(preview);
     let stimuli = stimuli.as_ref();
-    let options = ReportOptions { stimuli, preview, ..ReportOptions::default() };
+    let options = ReportOptions { stimuli, preview, versions, ..ReportOptions::default() };
     let language = Language::from_code(language)
         .ok_or_else(|| JsError::new(&format!("{language}: reports are written in en or fr")))?;
     let report = analyze_with(&table, &study, language, options)?;

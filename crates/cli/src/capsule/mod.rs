@@ -32,7 +32,7 @@ use mimique_server::{Assets, EmbeddedFile, HostedStudy, Hosting, Stage};
 use mimique_session::flow::Plays;
 use mimique_session::rows::TidyForm;
 use mimique_stats::Table;
-use mimique_study::{CheckedStudy, StaticHosting, Study};
+use mimique_study::{CheckedStudy, StaticHosting, Study, answered_hash, published};
 use serde_json::{Value, json};
 
 use crate::analyze::language;
@@ -234,7 +234,8 @@ impl Capsule<'_> {
         let table = Table::parse(csv)?;
         let shown = !self.study().clips().is_empty();
         let stimuli = shown.then(|| Table::parse(stimuli)).transpose()?;
-        let versions = StudyVersions { config_hash: Some(self.checked.config_hash()), served: &[] };
+        let hash = answered_hash(self.checked.value());
+        let versions = StudyVersions { config_hash: Some(&hash), served: &[] };
         // What was measured of faces says much of a person, and is not shared.
         let options = ReportOptions {
             stimuli: stimuli.as_ref(),
@@ -252,7 +253,7 @@ impl Capsule<'_> {
         if let Some(keys) = file.as_object_mut() {
             keys.remove("recruitment");
         }
-        file
+        published(self.checked.value(), file)
     }
 
     /// What takes the server's place: nothing is posted, nothing is offered, and there are no codes.

@@ -158,3 +158,14 @@ pub struct Section {
     /// Text; an empty line parts paragraphs.
     pub text: LocalText,
 }
+
+/// Which served file a published one was made of: a published file has neither completion codes nor addresses of
+/// recruitment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub struct Published {
+    /// Hash of the file that was served: the column `config_hash` of its answers.
+    pub served_hash: String,
+    /// Hash of this file without this key: where they differ, the file was changed afterwards and is another version.
+    pub published_hash: String,
+}

@@ -56,7 +56,7 @@ pub use exertion::{
     ExertionPerson, ExertionPlanPart, ExertionSex, ExertionSource, WrittenPart,
 };
 pub use general::{
-    Consent, Contact, ContactPerson, Metadata, Recruitment, RepeatPrevention, Section,
+    Consent, Contact, ContactPerson, Metadata, Published, Recruitment, RepeatPrevention, Section,
 };
 pub use hypotheses::{Exclusions, Generalise, Hypothesis, Measure, StraightLining, TestName};
 pub use json_block::JsonBlock;
@@ -178,6 +178,10 @@ pub struct Study {
     /// Rules, fixed beforehand, that leave trials or people out of the analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exclusions: Option<Exclusions>,
+    /// In a file that was published with its answers: which served file it is. Written by `mimique capsule` and
+    /// `mimique deposit`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub published: Option<Published>,
 }
 
 /// The file is not a study: what a reader says that stops at the first mistake.
