@@ -132,10 +132,11 @@ fn equal_exclusions_are_no_reason_for_a_warning() {
 /// A rule that excludes trials in one condition only is named where it cannot be missed.
 #[test]
 fn unequal_exclusion_between_conditions_is_a_warning() {
-    let study = study_in_conditions();
+    let mut study = study_in_conditions();
+    study.exclusions.as_mut().unwrap().late_frame_share = Some(0.2);
     let csv = export(&study, &Raters { people: PEOPLE, effect: 0.0, seed: 31 });
     let condition = "assigned_condition";
-    let csv = late(&csv, |cell| cell("condition") == "rested" && cell("expression") == "joy");
+    let csv = late(&csv, |cell| cell(condition) == "rested" && cell("expression") == "joy");
     for (language, words) in [
         (Language::English, "more often in some conditions than in others: "),
         (
@@ -149,7 +150,9 @@ fn unequal_exclusion_between_conditions_is_a_warning() {
         let own = rates.iter().find(|own| own["factor"] == condition).unwrap();
         assert_eq!(own["between_people"], true);
         assert!(own["p_holm"].as_f64().unwrap() < 0.001, "{own}");
-        assert_eq!(own["counts"]["10"][0], 0, "{own}");
+        // Thirteen participants a condition; a few more trials were late by chance.
+        let excluded = |level: &str| own["counts"][level][0].as_u64().unwrap();
+        assert!(excluded("rested") >= 2 * 13 && excluded("10") < 13, "{own}");
         let screen = first_screen(&report);
         assert!(screen.contains(words), "{screen}");
     }

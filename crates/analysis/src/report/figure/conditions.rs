@@ -53,7 +53,7 @@ pub(crate) fn people_by_condition(
     let spoken = spoken.join(", ");
     let alt = language.pick(
         format!("One small point each of {} by condition, a large one for the mean of each condition, with its number of people: {spoken}.", people_counted(language, all().count())),
-        format!("Un petit point pour chacune des {} personnes, par condition, un grand pour la moyenne de chaque condition, avec son effectif : {spoken}.", all().count()),
+        format!("Un petit point par personne ({}), par condition, un grand pour la moyenne de chaque condition, avec son effectif : {spoken}.", people_counted(language, all().count())),
     );
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }
 }

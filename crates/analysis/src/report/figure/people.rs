@@ -93,8 +93,14 @@ pub(crate) fn person_lines(
         .collect();
     let spoken = spoken.join(", ");
     let alt = language.pick(
-        format!("One thin line each of {}, a thick line for their mean: {spoken}.", people_counted(language, people.len())),
-        format!("Une ligne fine pour chacune des {} personnes, une ligne épaisse pour leur moyenne : {spoken}.", people.len()),
+        format!(
+            "One thin line each of {}, a thick line for their mean: {spoken}.",
+            people_counted(language, people.len())
+        ),
+        format!(
+            "Une ligne fine par personne ({}), une ligne épaisse pour la moyenne : {spoken}.",
+            people_counted(language, people.len())
+        ),
     );
     Figure { id: id.to_owned(), caption: caption.to_owned(), alt, svg: svg.finish(), data }
 }
