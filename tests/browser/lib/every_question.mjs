@@ -42,6 +42,6 @@ export async function written(page, study) {
   const folder = mkdtempSync(join(tmpdir(), "mimique-access-"));
   writeFileSync(join(folder, "access.json"), JSON.stringify(study));
   writeFileSync(join(folder, "dot.svg"), '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><circle cx="20" cy="20" r="15"/></svg>');
-  writeFileSync(join(folder, "sign.webm"), await recordVideo(page));
+  writeFileSync(join(folder, "sign.webm"), (await recordVideo(page)).bytes);
   return join(folder, "access.json");
 }
