@@ -11,7 +11,6 @@ use mimique_analysis::{
 };
 use mimique_locale::{Language, counted, counted_as};
 use mimique_stats::Table;
-use mimique_study::{Study, answered_hash};
 
 use crate::report_folder;
 
@@ -86,9 +85,7 @@ fn served_versions(args: &Args) -> anyhow::Result<Vec<ServedVersion>> {
         let text = std::fs::read_to_string(path)
             .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
             .with_context(place)?;
-        let file = mimique_study::parse(&text).with_context(place)?;
-        let study = Study::from_value(&file).with_context(place)?;
-        Ok(ServedVersion { config_hash: answered_hash(&file), study })
+        ServedVersion::from_text(&text).with_context(place)
     };
     paths.iter().map(read).collect()
 }
@@ -115,9 +112,8 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let text = std::fs::read_to_string(&args.study)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
         .with_context(|| place(&args.study))?;
-    let file = mimique_study::parse(&text).with_context(|| place(&args.study))?;
-    let study = Study::from_value(&file).with_context(|| place(&args.study))?;
-    let hash = answered_hash(&file);
+    let ServedVersion { config_hash: hash, study } =
+        ServedVersion::from_text(&text).with_context(|| place(&args.study))?;
     let served = served_versions(&args)?;
     let table = read_table(&args.export).with_context(|| place(&args.export))?;
     let stimuli = match &args.stimuli {

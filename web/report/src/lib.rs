@@ -12,7 +12,6 @@
 use mimique_analysis::{Report, ReportOptions, ServedVersion, StudyVersions, analyze_with};
 use mimique_locale::Language;
 use mimique_stats::Table;
-use mimique_study::{Study, answered_hash};
 use serde_json::json;
 use wasm_bindgen::prelude::*;
 
@@ -48,14 +47,10 @@ pub fn analyze(
     preview: &str,
     language: &str,
 ) -> Result<WebReport, JsError> {
-    let read = |text: &str| -> Result<ServedVersion, JsError> {
-        let file = mimique_study::parse(text)?;
-        Ok(ServedVersion { config_hash: answered_hash(&file), study: Study::from_value(&file)? })
-    };
-    let ServedVersion { config_hash, study } = read(study)?;
+    let ServedVersion { config_hash, study } = ServedVersion::from_text(study)?;
     let served = match published {
         "" => Vec::new(),
-        text => vec![read(text)?],
+        text => vec![ServedVersion::from_text(text)?],
     };
     let versions = StudyVersions { config_hash: Some(&config_hash), served: &served };
     let table = Table::parse(export)?;

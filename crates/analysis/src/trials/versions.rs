@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_stats::Table;
-use mimique_study::{Question, Study};
+use mimique_study::{Question, Study, StudyFileError, answered_hash};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -20,6 +20,17 @@ pub struct ServedVersion {
     pub config_hash: String,
     /// The file, read.
     pub study: Study,
+}
+
+impl ServedVersion {
+    /// Reads a study file; its hash is that of the answers to it.
+    ///
+    /// # Errors
+    /// [`StudyFileError`]: no JSON, or no study.
+    pub fn from_text(text: &str) -> Result<Self, StudyFileError> {
+        let file = mimique_study::parse(text)?;
+        Ok(Self { config_hash: answered_hash(&file), study: Study::from_value(&file)? })
+    }
 }
 
 /// The study file of the analysis and those that were served.
