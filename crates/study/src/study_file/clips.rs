@@ -99,7 +99,8 @@ pub struct Clip {
     /// Key of `stimuli.sounds`, where there are any; the page knows it by the factor `sound`.
     #[serde(skip)]
     pub sound: Option<String>,
-    /// Factors of avatar, segment, method and sound together.
+    /// Factors of avatar, segment, method and sound together. `method` is the method's name in the study file; where
+    /// some method has another name in the solver, `solverMethod` is that.
     pub factors: Factors,
 }
 
@@ -179,7 +180,10 @@ impl Study {
             let intensity = f64::from(performance.intensity);
             factors.insert("intensity".to_owned(), FactorValue::Number(intensity));
         }
-        factors.insert("method".to_owned(), FactorValue::Text(method.word()));
+        factors.insert("method".to_owned(), FactorValue::Text(entry.method.clone()));
+        if self.names_methods() {
+            factors.insert("solverMethod".to_owned(), FactorValue::Text(method.word()));
+        }
         if let Some(alpha) = method.spec.alpha {
             factors.insert("alpha".to_owned(), FactorValue::Number(alpha));
         }
@@ -211,6 +215,12 @@ impl Study {
             sound: entry.sound.clone(),
             factors,
         })
+    }
+
+    /// Whether some method has another name here than in the solver, as where one method is compared under several
+    /// parameters.
+    fn names_methods(&self) -> bool {
+        self.stimuli.methods.iter().any(|(name, method)| *name != method.word())
     }
 
     /// Every factor that some clip has, in alphabetical order.
