@@ -119,7 +119,7 @@ function compare(server, { backend }, given, bundle) {
   for (const row of trials) {
     assert.equal(row.status, "completed");
     assert.equal(row.backend, backend);
-    assert.ok(["lsts", "box"].includes(row.method), row.method);
+    assert.ok(["lsts30", "box"].includes(row.method), row.method);
     assert.ok(Number(row.frames) > 1, "frames are logged");
     assert.ok(Number(row.rt) > 0, "response time from the frame shown");
     assert.equal(row.provenance, bundle.clips[row.stimulus].provenance, "of the clip as it was shown");

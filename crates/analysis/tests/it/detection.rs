@@ -77,7 +77,7 @@ fn two_d_primes_planted_by_method_are_found_and_compared_within_people() {
     let emotions = ["anger", "disgust", "fear", "joy", "sadness", "surprise"];
     let mut random = Random::new(5);
     // Half and four fifths right; what is wrong is any other emotion.
-    let right = |method: &str| if method == "lsts" { 0.8 } else { 0.5 };
+    let right = |method: &str| if method == "lsts30" { 0.8 } else { 0.5 };
     let text = export_of_passes(&study, 14, 40);
     let text = answered(&text, "emotion", |cell| {
         let truth = cell("truth");
@@ -95,7 +95,7 @@ fn two_d_primes_planted_by_method_are_found_and_compared_within_people() {
     assert_eq!(by[0]["factor"], "method");
     let z = |rate: f64| -mimique_stats::normal_quantile_upper(rate);
     for own in by[0]["categories"].as_array().unwrap() {
-        let means = ["box", "lsts"].map(|method| {
+        let means = ["box", "lsts30"].map(|method| {
             let right = right(method);
             let planted = z(right) - z((1.0 - right) / 5.0);
             let people = &own["at"][method]["of_people"];
@@ -105,7 +105,7 @@ fn two_d_primes_planted_by_method_are_found_and_compared_within_people() {
             mean
         });
         let pair = &own["compared"]["d_prime"]["pairs"][0];
-        assert_eq!((pair["a"].as_str(), pair["b"].as_str()), (Some("box"), Some("lsts")));
+        assert_eq!((pair["a"].as_str(), pair["b"].as_str()), (Some("box"), Some("lsts30")));
         let difference = pair["difference"]["estimate"].as_f64().unwrap();
         assert!((difference - (means[0] - means[1])).abs() < 0.2, "{difference}, {means:?}");
         assert!(pair["wilcoxon"]["p_value"].as_f64().unwrap() < 0.01, "{pair}");

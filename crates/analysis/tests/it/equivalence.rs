@@ -12,7 +12,7 @@ use serde_json::Value;
 use crate::support::equivalence::equivalence;
 use crate::support::{Raters, demo_study, export, study_in_conditions};
 
-const METHODS: [&str; 2] = ["lsts", "box"];
+const METHODS: [&str; 2] = ["lsts30", "box"];
 
 /// The demonstration with one hypothesis of equivalence.
 fn study(smallest: f64) -> Study {

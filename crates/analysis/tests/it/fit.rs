@@ -116,7 +116,7 @@ fn recognition_is_found_again() {
     let recognition = planted.recognition.get_mut("emotion").unwrap();
     (recognition.person_sd, recognition.segment_sd, recognition.clip_sd) = (0.6, 0.0, 0.0);
     recognition.person_by_sd = [("method".to_owned(), 0.4)].into();
-    let shifts = [("lsts", 0.25), ("box", -0.25)].map(|(level, shift)| (level.to_owned(), shift));
+    let shifts = [("lsts30", 0.25), ("box", -0.25)].map(|(level, shift)| (level.to_owned(), shift));
     recognition.effects = [("method".to_owned(), shifts.into_iter().collect())].into();
     let table = export(&study, &hash, &planted, 8, 400);
     let found = Parameters::fit(&table, &study).unwrap();
@@ -138,7 +138,7 @@ fn recognition_is_found_again() {
     }
     near("people", is.person_sd, 0.6, 0.15);
     near("people x method", is.person_by_sd["method"], 0.4, 0.15);
-    near("method", is.effects["method"]["lsts"], 0.25, 0.08);
+    near("method", is.effects["method"]["lsts30"], 0.25, 0.08);
     assert!(is.clip_sd < 0.2 && is.segment_sd < 0.2, "{} {}", is.clip_sd, is.segment_sd);
 }
 

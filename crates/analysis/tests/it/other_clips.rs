@@ -41,7 +41,7 @@ fn ratings_within_people_have_both_tests_and_these_clips_decide() {
     assert!(p < 0.05, "methods 1.5 points apart: {p}");
     let pair = &model["pairs"][0];
     // The hypothesis names the higher one first.
-    assert_eq!([&pair["a"], &pair["b"]], ["lsts", "box"]);
+    assert_eq!([&pair["a"], &pair["b"]], ["lsts30", "box"]);
     let odds = |value: &Value| value.as_f64().unwrap();
     assert!(odds(&pair["interval_95"][1]) < 1.0 && odds(&pair["odds_ratio"]) > 0.005);
     assert!(odds(&pair["higher"]) < 0.45);
@@ -160,7 +160,7 @@ fn planted_in_the_figures(thresholds: &[f64], [near_sd, near_share]: [f64; 2]) {
         let (person, method, clip) = (cell("participant_id"), cell("method"), cell("stimulus"));
         let segment = study.clips().iter().find(|own| own.id == clip).unwrap().segment.clone();
         let groups = [person.clone(), format!("{person}:{method}"), segment, clip];
-        let mut latent = if method == "lsts" { effect } else { 0.0 };
+        let mut latent = if method == "lsts30" { effect } else { 0.0 };
         for ((group, met), effects) in groups.into_iter().zip(&mut met).zip(&effects) {
             let place = met.iter().position(|own| *own == group).unwrap_or_else(|| {
                 met.push(group);
@@ -200,7 +200,7 @@ fn planted_in_the_figures(thresholds: &[f64], [near_sd, near_share]: [f64; 2]) {
         assert_eq!(shares.cell(row, 1), Some("model"));
         assert_eq!(shares.cell(row + 1, 1), Some("observed"));
         let level = shares.cell(row, 0).unwrap();
-        let shift = if level.contains("LSTS") || level == "lsts" { effect } else { 0.0 };
+        let shift = if level.contains("LSTS") || level == "lsts30" { effect } else { 0.0 };
         let below = |place: usize| match thresholds.get(place) {
             Some(threshold) => 1.0 / (1.0 + (shift - threshold).exp()),
             None => 1.0,

@@ -87,7 +87,7 @@ fn power_is_that_of_the_paired_test() {
     rating.person_by_sd.clear();
     (rating.person_sd, rating.segment_sd, rating.clip_sd) = (0.5, 0.0, 0.0);
     rating.interactions.clear();
-    let shifts = [("lsts", 0.25), ("box", -0.25)].map(|(level, shift)| (level.to_owned(), shift));
+    let shifts = [("lsts30", 0.25), ("box", -0.25)].map(|(level, shift)| (level.to_owned(), shift));
     rating.effects = [("method".to_owned(), shifts.into_iter().collect())].into_iter().collect();
     let result = power(&study, &hash, &parameters, &options(&[12, 20], 1500), &|| {}).unwrap();
     for point in &result.points {

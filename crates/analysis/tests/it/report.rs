@@ -44,7 +44,7 @@ fn holds_every_part_under_its_own_name() {
             "tables/hypothesis-h1.csv",
             "tables/late-frames.csv",
             "figures/participants.svg",
-            "figures/emotion-confusion-lsts.svg",
+            "figures/emotion-confusion-lsts30.svg",
             "figures/emotion-shares.svg",
             "figures/believability-by-method.svg",
             "figures/believability-by-method-differences.svg",
@@ -78,14 +78,14 @@ fn finds_a_planted_effect_and_says_who_stands_behind_it() {
     let hypothesis = &results["hypotheses"][1];
     assert_eq!(hypothesis["id"], "H2");
     let pair = &hypothesis["recommended"]["pairs"][0];
-    assert_eq!([&pair["a"], &pair["b"]], ["lsts", "box"]);
+    assert_eq!([&pair["a"], &pair["b"]], ["lsts30", "box"]);
     assert_eq!(pair["n"], 27);
     assert!(pair["wilcoxon"]["p_value"].as_f64().unwrap() < 1e-4);
     let difference = &pair["difference"];
     assert!(difference["ci_low"].as_f64().unwrap() < 1.0);
     assert!(difference["ci_high"].as_f64().unwrap() > 0.8);
     let reading = &report.readings[1].1;
-    assert!(reading.contains("lsts was rated higher than box"), "{reading}");
+    assert!(reading.contains("lsts30 was rated higher than box"), "{reading}");
     assert!(reading.contains("of 27 people"), "{reading}");
     assert_eq!(hypothesis["as_in_the_thesis"]["assumes"], "independent observations");
 }
@@ -94,7 +94,7 @@ fn finds_a_planted_effect_and_says_who_stands_behind_it() {
 fn shows_no_difference_where_there_is_none_and_does_not_call_it_proof() {
     let report = report(&Raters { people: 20, effect: 0.0, seed: 11 }, Language::English);
     let reading = &report.readings[2].1;
-    assert!(reading.contains("no difference between lsts and box was shown"), "{reading}");
+    assert!(reading.contains("no difference between lsts30 and box was shown"), "{reading}");
     assert!(report.files[0].text.contains("that is no proof that there is nothing"));
 }
 
@@ -184,7 +184,7 @@ fn counts_who_and_what_is_left_out() {
 fn two_people_are_too_few_and_that_is_said() {
     let report = report(&Raters { people: 3, effect: 2.0, seed: 5 }, Language::English);
     let reading = &report.readings[1].1;
-    assert!(reading.contains("too few to compare lsts and box"), "{reading}");
+    assert!(reading.contains("too few to compare lsts30 and box"), "{reading}");
     assert!(reading.contains("p could not fall below 0.500"), "{reading}");
     let french = self::report(&Raters { people: 2, effect: 0.0, seed: 5 }, Language::French);
     assert!(french.files[0].text.contains("Comme dans la thèse"));
@@ -493,10 +493,10 @@ fn parts_of_questions_are_tested_by_their_names() {
     let study = Study::from_value(&value).unwrap();
     let mut parameters = Parameters::for_study(&study);
     let arousal = parameters.ratings.get_mut("grid.arousal").unwrap();
-    let [lsts, _] = ["lsts", "box"].map(|method| arousal.effects["method"][method]);
+    let [lsts, _] = ["lsts30", "box"].map(|method| arousal.effects["method"][method]);
     assert!(lsts != 0.0, "a default of its own");
     let valence = parameters.ratings.get_mut("grid.valence").unwrap();
-    valence.effects.insert("method".into(), [("lsts".into(), 2.0), ("box".into(), 0.0)].into());
+    valence.effects.insert("method".into(), [("lsts30".into(), 2.0), ("box".into(), 0.0)].into());
     let hash = mimique_study::config_hash(&value);
     let csv =
         simulated_export(&Simulation::new(&study, &hash, &parameters, 3).unwrap(), &study, 25);

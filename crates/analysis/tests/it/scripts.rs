@@ -18,7 +18,7 @@ use crate::support::{Raters, demo_study, export, parameter_study, study_in_condi
 
 fn reports() -> Vec<(&'static str, Report)> {
     let (mut demo, mut conditions) = (demo_study(), study_in_conditions());
-    let methods = ["lsts", "box"];
+    let methods = ["lsts30", "box"];
     demo.hypotheses.push(equivalence("E1", "believability", "method", methods, 0.5));
     demo.hypotheses.push(equivalence("E2", "emotion", "method", methods, 0.1));
     let scale = |items: [&str; 2], reversed: &[&str]| CompositeScale {
@@ -96,8 +96,8 @@ fn d_primes_by_method_and_courses_are_computed_again() {
     let often = keys("often");
     for key in [
         "detection:emotion:method:anger:box effect",
-        "detection:emotion:method:anger:d':box | lsts p",
-        "detection:emotion:method:anger:c:box | lsts p_holm",
+        "detection:emotion:method:anger:d':box | lsts30 p",
+        "detection:emotion:method:anger:c:box | lsts30 p_holm",
         "roc:emotion:anger low",
         "roc:emotion:anger:all hits.3",
     ] {

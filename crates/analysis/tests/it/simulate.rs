@@ -167,7 +167,7 @@ fn answers_have_the_planted_confusion_means_and_spreads() {
     rating.interactions.clear();
     rating.effects = [(
         "method".to_owned(),
-        [("lsts".to_owned(), 0.5), ("box".to_owned(), -0.5)].into_iter().collect(),
+        [("lsts30".to_owned(), 0.5), ("box".to_owned(), -0.5)].into_iter().collect(),
     )]
     .into_iter()
     .collect();
@@ -196,7 +196,7 @@ fn answers_have_the_planted_confusion_means_and_spreads() {
         }
     }
     // 9,000 ratings a method; people's spread 0.6 and 0.3 gives a standard error of 0.02.
-    for (method, expected) in [("lsts", 4.5), ("box", 3.5)] {
+    for (method, expected) in [("lsts30", 4.5), ("box", 3.5)] {
         let (sum, count) = sums[method];
         assert!((sum / count - expected).abs() < 0.06, "{method}: {}", sum / count);
     }

@@ -41,7 +41,7 @@ fn study(folder: &Path) -> PathBuf {
         },
         "hypotheses": [{
             "id": "H1", "statement": text("The methods differ."), "test": "wilcoxon", "response": "strong",
-            "factors": ["method"], "levels": ["box", "lsts"],
+            "factors": ["method"], "levels": ["box", "real"],
         }],
     });
     let path = folder.join("shared.json");

@@ -90,7 +90,7 @@ pub async fn the_tidy_table_holds_every_answer(server: &TestServer) {
     // Factors, times and hash stand in every row of a trial.
     let hash = study::demo().config_hash().to_owned();
     for row in rows.iter().filter(|row| row["trial_type"] == "trial") {
-        assert!(["lsts", "box"].contains(&&*row["method"]), "{row:?}");
+        assert!(["lsts30", "box"].contains(&&*row["method"]), "{row:?}");
         assert_eq!(row["config_hash"], hash);
         assert_eq!(row["stage"], "live");
         assert_eq!(row["weights_hash"], "00ff");

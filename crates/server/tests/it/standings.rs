@@ -177,7 +177,7 @@ pub async fn everybody_agrees_on_every_session(server: &TestServer) {
         assert!(!deleted.contains(number));
     }
     // The balance of what the completed were shown.
-    for method in ["box", "lsts"] {
+    for method in ["box", "lsts30"] {
         let is_shown = |row: &&BTreeMap<String, String>| {
             row["status"] == "completed" && row["trial_type"] == "trial" && row["method"] == method
         };

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{ClipEntry, Study};
+use super::{ClipEntry, MethodEntry, Study};
 
 /// Free key -> value pairs that the analysis groups by.
 pub type Factors = BTreeMap<String, FactorValue>;
@@ -99,8 +99,8 @@ pub struct Clip {
     /// Key of `stimuli.sounds`, where there are any; the page knows it by the factor `sound`.
     #[serde(skip)]
     pub sound: Option<String>,
-    /// Factors of avatar, segment, method and sound together. `method` is the method's name in the study file; where
-    /// some method has another name in the solver, `solverMethod` is that.
+    /// Factors of avatar, segment, method and sound together. `method` is the method's name in the study file,
+    /// `solverMethod` that in the solver, where the study has one of these under several names, and others.
     pub factors: Factors,
 }
 
@@ -181,7 +181,7 @@ impl Study {
             factors.insert("intensity".to_owned(), FactorValue::Number(intensity));
         }
         factors.insert("method".to_owned(), FactorValue::Text(entry.method.clone()));
-        if self.names_methods() {
+        if self.groups_methods() {
             factors.insert("solverMethod".to_owned(), FactorValue::Text(method.word()));
         }
         if let Some(alpha) = method.spec.alpha {
@@ -217,10 +217,12 @@ impl Study {
         })
     }
 
-    /// Whether some method has another name here than in the solver, as where one method is compared under several
-    /// parameters.
-    fn names_methods(&self) -> bool {
-        self.stimuli.methods.iter().any(|(name, method)| *name != method.word())
+    /// Whether the solver's methods are a factor of their own: one of them is there under several names, as with several
+    /// parameters, and there are others.
+    fn groups_methods(&self) -> bool {
+        let methods = &self.stimuli.methods;
+        let words: BTreeSet<String> = methods.values().map(MethodEntry::word).collect();
+        words.len() > 1 && words.len() < methods.len()
     }
 
     /// Every factor that some clip has, in alphabetical order.

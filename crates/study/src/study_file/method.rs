@@ -9,7 +9,7 @@ use super::{Factors, LocalText};
 /// A method, its parameters, and what the analysis calls it.
 ///
 /// In JSON the solver's parameters, `factors`, `label` and `training` stand side by side:
-/// `{"method": "lsts", "alpha": 0.3, "factors": {"method": "lsts30"}}`.
+/// `{"method": "lsts", "alpha": 0.3, "factors": {"shell": "thin"}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodEntry {
     /// Method and parameters.

@@ -6,6 +6,7 @@ mod check_at_once;
 mod check_codes;
 mod check_report;
 mod golden_orders;
+mod method_levels;
 mod order_balance;
 mod order_decided;
 mod order_draws;

@@ -166,7 +166,7 @@ fn a_planted_lag_is_found_where_it_was_planted() {
             .unwrap()
             .clone()
     };
-    let (follows, other) = (of("lsts"), of("box"));
+    let (follows, other) = (of("lsts30"), of("box"));
     assert!(follows["found"]["highest_r"].as_f64().unwrap() > 0.5, "{follows}");
     assert!(follows["found"]["p_value"].as_f64().unwrap() <= 0.01);
     assert!(
