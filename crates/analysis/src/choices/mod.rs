@@ -2,5 +2,6 @@
 //! on which side, and which was chosen; what tests say of them, and in words.
 
 pub(crate) mod answers;
+pub(crate) mod preference;
 pub(crate) mod reading;
 pub(crate) mod tested;

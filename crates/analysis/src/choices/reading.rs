@@ -3,6 +3,7 @@
 use mimique_locale::Language;
 use mimique_stats::{Outcome, WorthContrast, WorthEstimates};
 
+use super::preference::{Preference, preference};
 use super::tested::ChoiceTests;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::naming::Naming;
@@ -47,6 +48,16 @@ pub(crate) fn choices(
         return of_two(naming, found, estimates, factor, (label, line));
     }
     let mut sentences = vec![overall(naming, factor, label, line)];
+    let is_shown = line.p_that_counts() < LEVEL;
+    if let Some(Preference::Ranking(levels)) = preference(found).filter(|_| is_shown) {
+        let levels: Vec<String> =
+            levels.iter().map(|own| naming.level(factor, &own.level)).collect();
+        let levels = levels.join(", ");
+        sentences.push(language.pick(
+            format!("From the most to the least chosen: {levels}."),
+            format!("Du plus au moins choisi : {levels}."),
+        ));
+    }
     if let Some(estimates) = estimates {
         sentences.extend(pairs(naming, factor, estimates));
     }

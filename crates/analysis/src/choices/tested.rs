@@ -37,20 +37,17 @@ pub(crate) struct ChoiceTests {
     pub consistency: Option<Consistency>,
 }
 
-/// Draws of participants and answers, of a report.
-pub(crate) const ROUNDS: [usize; 2] = [2000, 999];
-/// The same where only the tests are wanted.
-pub(crate) const NO_ROUNDS: [usize; 2] = [0, 0];
+/// Draws of answers for the lack of fit, of a report.
+pub(crate) const FIT_ROUNDS: usize = 999;
 
-/// Tests choices between levels; `rounds` are draws of participants for intervals, and of answers for the lack of
-/// fit.
+/// Tests choices between levels; `fit_rounds` are draws of answers for the lack of fit, 0 where only the tests are wanted.
 pub(crate) fn tested(
     question: &str,
     factor: &str,
     data: &PairedComparisons,
-    [rounds, fit_rounds]: [usize; 2],
+    fit_rounds: usize,
 ) -> ChoiceTests {
-    let options = BradleyTerryOptions { rounds, fit_rounds, ..BradleyTerryOptions::default() };
+    let options = BradleyTerryOptions { fit_rounds, ..BradleyTerryOptions::default() };
     let call = |design, test| Call::new(design, test).text(question).text(factor).list(&data.items);
     let worths = bradley_terry(data, &options);
     let (trials, people) = match data.items.len() {

@@ -4,6 +4,7 @@ use mimique_stats::Labelled;
 use mimique_study::{Hypothesis, Study};
 
 use super::{HypothesisResult, Read, deciding_p, not_tested};
+use crate::choices::preference::preference;
 use crate::choices::{answers, reading, tested};
 use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::trial_level::TrialLevel;
@@ -26,6 +27,7 @@ pub(super) fn of_choices(
     let factor = hypothesis.factors.first().map_or("", String::as_str);
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let order = naming.level_order(factor);
+    let mut preferred = None;
     let read = match answers::by_factor(export, &hypothesis.response, factor, &order, &levels) {
         None if export.answers_to(&hypothesis.response).is_empty() => {
             let response = hypothesis.response.clone();
@@ -33,8 +35,9 @@ pub(super) fn of_choices(
         }
         None => not_tested(language, &NotTested::TooFewLevels { factor: factor.to_owned() }),
         Some(data) => {
-            let found = tested::tested(&hypothesis.response, factor, &data, tested::NO_ROUNDS);
+            let found = tested::tested(&hypothesis.response, factor, &data, 0);
             let reading = reading::choices(naming, &found, factor, label);
+            preferred = preference(&found);
             let tests = found.as_in_the_thesis.tests;
             Read { trials: tests, people: found.recommended, equivalence: None, reading }
         }
@@ -51,6 +54,7 @@ pub(super) fn of_choices(
         recommended: read.people,
         other_clips: None,
         equivalence: None,
+        preference: preferred,
         matching: None,
         trials_without_level: 0,
         people_by_condition: Labelled::default(),

@@ -4,6 +4,7 @@
 use mimique_stats::{EquivalenceVerdict, Outcome};
 use mimique_study::TestName;
 
+use crate::choices::preference::Preference;
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::is_two_way;
 use crate::hypothesis::reading::LEVEL;
@@ -47,20 +48,36 @@ pub(crate) enum EffectUnit {
     Seconds,
     /// Odds of a higher rating.
     Odds,
+    /// Shares of choices.
+    Chosen,
+    /// Just noticeable differences from the mean of all levels.
+    Worth,
 }
 
 impl EffectUnit {
     /// How far a value lies from no difference, on the scale on which intervals are drawn.
     pub(crate) fn drawn(self, value: f64) -> f64 {
-        if self == Self::Odds { value.ln() } else { value }
+        match self {
+            Self::Odds => value.ln(),
+            Self::Chosen => value - 0.5,
+            Self::Points | Self::Shares | Self::Seconds | Self::Worth => value,
+        }
     }
 }
 
-/// The difference between two levels with its interval.
+/// What an effect is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EffectOf<'r> {
+    /// The first less the second; of odds and choices, the first against the second.
+    Difference([&'r str; 2]),
+    /// One level against the mean of all.
+    Level(&'r str),
+}
+
+/// The difference between two levels, or the worth of one, with its interval.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Effect<'r> {
-    /// The first less the second; of odds, the first against the second.
-    pub levels: [&'r str; 2],
+    pub of: EffectOf<'r>,
     pub estimate: f64,
     pub interval: [f64; 2],
     /// Percent that the interval covers.
@@ -128,7 +145,7 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         let [a, b] = &found.levels;
         let effect = own.and_then(|own| {
             Some(Effect {
-                levels: [a, b],
+                of: EffectOf::Difference([a, b]),
                 estimate: own.estimate?,
                 interval: own.interval_90?,
                 covers: 90,
@@ -138,6 +155,9 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         });
         return effect.into_iter().collect();
     }
+    if let Some(preferred) = &result.preference {
+        return of_choices(preferred);
+    }
     let model = result.other_clips.as_ref().filter(|found| found.decides);
     if let Some(Some(Outcome::Ok(model))) = model.map(|found| &found.mixed_model) {
         // The model's odds are those at the second level.
@@ -146,7 +166,7 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
             .map(|pair| {
                 let [low, high] = pair.interval_95;
                 Effect {
-                    levels: [&pair.a, &pair.b],
+                    of: EffectOf::Difference([&pair.a, &pair.b]),
                     estimate: 1.0 / pair.odds_ratio,
                     interval: [1.0 / high, 1.0 / low],
                     covers: 95,
@@ -161,7 +181,7 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
     few.filter_map(|pair| {
         let found = pair.difference?;
         Some(Effect {
-            levels: [&pair.a, &pair.b],
+            of: EffectOf::Difference([&pair.a, &pair.b]),
             estimate: found.estimate,
             interval: [found.ci_low, found.ci_high],
             covers: 95,
@@ -170,4 +190,24 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         })
     })
     .collect()
+}
+
+/// The ranking, or how often the more chosen of two levels is chosen.
+fn of_choices(preferred: &Preference) -> Vec<Effect<'_>> {
+    let effect = |of, estimate, interval: Option<[f64; 2]>, unit| {
+        Some(Effect { of, estimate, interval: interval?, covers: 95, unit, smallest: None })
+    };
+    match preferred {
+        Preference::Ranking(levels) => (levels.iter())
+            .filter_map(|own| {
+                let of = EffectOf::Level(&own.level);
+                effect(of, own.worth_jnd, own.interval, EffectUnit::Worth)
+            })
+            .collect(),
+        Preference::OneOfTwo(own) => {
+            let [a, b] = &own.levels;
+            let of = EffectOf::Difference([a, b]);
+            effect(of, own.share, own.interval, EffectUnit::Chosen).into_iter().collect()
+        }
+    }
 }

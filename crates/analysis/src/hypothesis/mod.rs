@@ -22,6 +22,7 @@ use mimique_study::columns::ASSIGNED_CONDITION;
 use mimique_study::{AnswerOfPair, Hypothesis, Measure as What, Question, Study, TestName};
 use serde::Serialize;
 
+use crate::choices::preference::Preference;
 use crate::hypothesis::comparison::without_level;
 use crate::hypothesis::conditions::InCondition;
 use crate::hypothesis::equivalence::Equivalence;
@@ -55,6 +56,9 @@ pub(crate) struct HypothesisResult {
     /// Whether the difference is smaller than the smallest that matters, where that is what is tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equivalence: Option<Equivalence>,
+    /// Which level is preferred, of choices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preference: Option<Preference>,
     /// Which answers are compared, where the first factor is one of the clips.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matching: Option<Matching>,
@@ -171,6 +175,7 @@ pub(crate) fn test_hypothesis(
         recommended: people,
         other_clips,
         equivalence,
+        preference: None,
         reading,
     }
 }

@@ -267,8 +267,8 @@ fn test_of_choices(language: Language, levels: usize) -> String {
     }
     let few = 2 * levels.saturating_sub(1);
     language.pick(
-        format!("equal worths in the Bradley-Terry model, with Davidson’s ties where “no difference” is an answer and a side bias where the sides vary: Wald’s F with errors clustered by participant (with {few} participants or fewer: Friedman’s test on each one’s wins); then, for pairs, t tests clustered by participant, corrected by Holm; intervals by drawing participants 2000 times"),
-        format!("égalité des valeurs dans le modèle de Bradley-Terry, avec les égalités de Davidson si « pas de différence » est une réponse et un biais de côté si les côtés varient : F de Wald à erreurs groupées par participant (avec {few} participants ou moins : test de Friedman sur les victoires de chacun) ; puis, pour les paires, tests t groupés par participant, corrigés par Holm ; intervalles par 2000 tirages de participants"),
+        format!("equal worths in the Bradley-Terry model, with Davidson’s ties where “no difference” is an answer and a side bias where the sides vary: Wald’s F with errors clustered by participant (with {few} participants or fewer: Friedman’s test on each one’s wins); then, for pairs, t tests clustered by participant, corrected by Holm, with the intervals of these t"),
+        format!("égalité des valeurs dans le modèle de Bradley-Terry, avec les égalités de Davidson si « pas de différence » est une réponse et un biais de côté si les côtés varient : F de Wald à erreurs groupées par participant (avec {few} participants ou moins : test de Friedman sur les victoires de chacun) ; puis, pour les paires, tests t groupés par participant, corrigés par Holm, avec les intervalles de ces t"),
     )
 }
 

@@ -125,6 +125,40 @@ fn planted_worths_side_and_ties_are_found_again() {
     }
 }
 
+/// The first screen says which level is preferred: the ranking with its intervals, drawn, or the share of two.
+#[test]
+fn the_first_screen_has_the_ranking() {
+    let study = study(&three_methods());
+    let own = report(&study, &planted(&study, &WORTHS, 0.4), 60, Language::English);
+    let results: Value = serde_json::from_str(file(&own, "results.json")).unwrap();
+    let ranking = results["hypotheses"][0]["preference"]["ranking"].as_array().unwrap();
+    let levels: Vec<&str> = ranking.iter().map(|level| level["level"].as_str().unwrap()).collect();
+    assert_eq!(levels, ["real", "lsts30", "box"]);
+    let text = file(&own, "report.md");
+    let screen = &text[..text.find("## Participants").unwrap()];
+    let places = ["Real face: 0.", "LSTS30: ", "Box (baseline): -"]
+        .map(|words| screen.find(words).unwrap_or_else(|| panic!("{words}: {screen}")));
+    assert!(places.is_sorted(), "{screen}");
+    assert!(screen.contains(" JND \\["), "{screen}");
+    let page = file(&own, "report.html");
+    assert!(page.contains("just noticeable differences (JND: one of two is chosen in 75 %)"));
+    let reading = &own.readings[0].1;
+    let order = "From the most to the least chosen: Real face, LSTS30, Box (baseline).";
+    assert!(reading.contains(order), "{reading}");
+    assert!(page.contains("class=\"forest"), "the intervals are drawn");
+
+    let two = self::study(&two_methods());
+    let chosen = planted(&two, &[("box", -0.6), ("lsts30", 0.6)], 0.0);
+    let own = report(&two, &chosen, 24, Language::English);
+    let text = file(&own, "report.md");
+    let screen = &text[..text.find("## Participants").unwrap()];
+    let words = "LSTS30 over Box (baseline): ";
+    assert!(
+        screen.contains(words) && screen.contains(" % of the choices of one of them"),
+        "{screen}"
+    );
+}
+
 #[test]
 fn worths_are_fitted_to_an_export() {
     let study = study(&three_methods());

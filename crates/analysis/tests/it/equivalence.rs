@@ -108,7 +108,7 @@ fn it_is_the_test_of_person_means_and_stands_in_table_and_figure() {
     assert!((own.p - p).abs() < 1e-12, "{} {p}", own.p);
     let zone = file(&report, "tables/figure-hypothesis-e1-zone.csv");
     assert_eq!(zone.lines().count(), 3, "{zone}");
-    assert!(zone.contains("zone bas") && zone.contains("différence médiane"), "{zone}");
+    assert!(zone.contains("zone bas") && zone.contains("différence de Hodges-Lehmann"), "{zone}");
     assert!(file(&report, "figures/hypothesis-e1-zone.svg").contains("La zone va de −0,5 à 0,5"));
     let table = file(&report, "tables/hypothesis-e1-equivalence.csv");
     assert!(table.contains("deux tests unilatéraux des rangs signés"), "{table}");

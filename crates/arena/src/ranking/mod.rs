@@ -314,11 +314,7 @@ fn estimated(
         return Err(NotRanked::TooFewVotes);
     }
     let data = comparisons(votes);
-    let options = BradleyTerryOptions {
-        rounds: options.rounds,
-        seed: options.seed,
-        ..BradleyTerryOptions::default()
-    };
+    let options = BradleyTerryOptions { seed: options.seed, ..BradleyTerryOptions::default() };
     let found = match bradley_terry(&data, &options) {
         Ok(BradleyTerry { estimates: Outcome::Ok(found), .. }) => found,
         Ok(BradleyTerry { estimates: Outcome::Undefined { reason }, .. }) => {

@@ -4,3 +4,4 @@ mod agreement;
 mod factors;
 mod invariance;
 mod replay;
+mod worths;

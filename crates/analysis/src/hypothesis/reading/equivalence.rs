@@ -130,7 +130,7 @@ fn estimate(language: Language, kind: MeasureKind, found: &Equivalence) -> Optio
     let [estimate, low, high] = [estimate, low, high].map(|v| difference(language, kind, v));
     let unit = unit(language, kind);
     let of = match ranks {
-        true => language.pick("median difference", "différence médiane"),
+        true => language.pick("Hodges-Lehmann difference", "différence de Hodges-Lehmann"),
         false => language.pick("difference of means", "différence des moyennes"),
     };
     Some(language.pick(

@@ -1,7 +1,7 @@
 //! Pairs of levels in plain words.
 
 use mimique_locale::Language;
-use mimique_stats::Outcome;
+use mimique_stats::{Outcome, median};
 
 use super::{LEVEL, difference, unit};
 use crate::hypothesis::person_level::Pair;
@@ -171,7 +171,8 @@ fn undefined_pair(language: Language, people: usize, a: &str, b: &str) -> String
     )
 }
 
-/// The median difference with its interval.
+/// Hodges and Lehmann's difference with its interval, and the median of people's differences, which is another number where
+/// differences are skewed or many are 0.
 fn observed(language: Language, kind: MeasureKind, pair: &Pair, line: &TestLine) -> String {
     let Some(d) = pair.difference else { return String::new() };
     // The higher level is named first where there is one; else a is, as in the tables.
@@ -187,9 +188,11 @@ fn observed(language: Language, kind: MeasureKind, pair: &Pair, line: &TestLine)
     } else {
         language.pick("widest interval", "intervalle le plus large")
     };
+    let median = median(&mut pair.differences.clone()) * sign;
+    let median = difference(language, kind, median);
     language.pick(
-        format!("median difference {estimate}{unit} ({interval} {low} to {high})"),
-        format!("différence médiane {estimate}{unit} ({interval} : {low} à {high})"),
+        format!("Hodges-Lehmann difference {estimate}{unit} ({interval} {low} to {high}), median of the differences {median}{unit}"),
+        format!("différence de Hodges-Lehmann {estimate}{unit} ({interval} : {low} à {high}), médiane des différences {median}{unit}"),
     )
 }
 

@@ -23,7 +23,7 @@ impl Writer<'_> {
         data: &PairedComparisons,
     ) -> ChoiceTests {
         let language = self.language();
-        let found = tested::tested(&asked.id, factor, data, tested::ROUNDS);
+        let found = tested::tested(&asked.id, factor, data, tested::FIT_ROUNDS);
         let shown = self.naming.factor(factor);
         let id = format!("{}-choices-{}", slug(&asked.id), slug(factor));
         self.blocks.push(Block::Heading(
@@ -252,10 +252,10 @@ impl Writer<'_> {
                 ).to_owned()));
             }
         }
-        if let Some(how) = found.bootstrap {
+        if found.worth_interval.is_some() {
             words.push(language.pick(
-                format!("Intervals are percentiles of {} draws of participants, {} of them separated (penalised estimates).", how.rounds, how.separated),
-                format!("Les intervalles sont des centiles de {} tirages de participants, dont {} séparés (estimations pénalisées).", how.rounds, how.separated),
+                "Intervals at 95 % are those of the t tests, with errors clustered by participant.".to_owned(),
+                "Les intervalles à 95 % sont ceux des tests t, à erreurs groupées par participant.".to_owned(),
             ));
         }
         self.blocks.push(Block::Paragraph(words.join(" ")));

@@ -6,7 +6,7 @@ use mimique_stats::Outcome;
 
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::decision::{
-    Decision, Effect, EffectUnit, deciding_p_values, decision, effects,
+    Decision, Effect, EffectOf, EffectUnit, deciding_p_values, decision, effects,
 };
 use crate::hypothesis::reading;
 use crate::naming::people_counted;
@@ -73,8 +73,13 @@ impl Writer<'_> {
             ),
         };
         let columns = language.pick(
-            ["hypothesis", "decision", "difference [95 %], or effect size", "people"],
-            ["hypothèse", "décision", "différence [95 %] ou taille d’effet", "personnes"],
+            ["hypothesis", "decision", "difference or worth [95 %], or effect size", "people"],
+            [
+                "hypothèse",
+                "décision",
+                "différence ou valeur [95 %], ou taille d’effet",
+                "personnes",
+            ],
         );
         let [hypothesis, decided, effect, people] = columns.map(str::to_owned);
         let caption = language.pick("What the hypotheses found", "Ce que donnent les hypothèses");
@@ -140,26 +145,45 @@ impl Writer<'_> {
 
     fn effect_in_words(&self, factor: &str, effect: &Effect<'_>) -> String {
         let language = self.language();
-        let [a, b] = effect.levels;
         let number = |value: f64| match effect.unit {
             EffectUnit::Shares => language.fixed(value * 100.0, 1),
-            EffectUnit::Points | EffectUnit::Seconds => language.fixed(value, 2),
+            EffectUnit::Points | EffectUnit::Seconds | EffectUnit::Worth => {
+                language.fixed(value, 2)
+            }
             EffectUnit::Odds => language.fixed(value, 1),
+            EffectUnit::Chosen => language.fixed(value * 100.0, 0),
         };
         let unit = match effect.unit {
             EffectUnit::Shares => language.pick(" percentage points", " points de pourcentage"),
             EffectUnit::Seconds => " s",
             EffectUnit::Points => "",
             EffectUnit::Odds => language.pick(" times the odds", " fois les chances"),
+            EffectUnit::Chosen => {
+                language.pick(" % of the choices of one of them", " % des choix de l’un des deux")
+            }
+            EffectUnit::Worth => language.pick(" JND", " DJP"),
         };
         let [low, high] = effect.interval.map(number);
         let covers = match effect.covers {
             95 => String::new(),
             covers => format!("{covers} %: "),
         };
-        let pair = self.naming.pair(factor, a, b);
+        let of = self.effect_of(factor, effect);
         let colon = language.pick(":", " :");
-        format!("{pair}{colon} {}{unit} [{covers}{low}; {high}]", number(effect.estimate))
+        format!("{of}{colon} {}{unit} [{covers}{low}; {high}]", number(effect.estimate))
+    }
+
+    /// What an effect is of, in words.
+    pub(crate) fn effect_of(&self, factor: &str, effect: &Effect<'_>) -> String {
+        let naming = &self.naming;
+        match (effect.of, effect.unit) {
+            (EffectOf::Level(level), _) => naming.level(factor, level),
+            (EffectOf::Difference([a, b]), EffectUnit::Chosen) => {
+                let [a, b] = [a, b].map(|level| naming.level(factor, level));
+                self.language().pick(format!("{a} over {b}"), format!("{a} plutôt que {b}"))
+            }
+            (EffectOf::Difference([a, b]), _) => naming.pair(factor, a, b),
+        }
     }
 
     /// How wide the drawings are, in the units that are drawn.
@@ -183,6 +207,17 @@ impl Writer<'_> {
                 (EffectUnit::Odds, edge) => language.pick(
                     format!("odds from 1/{0} to {0}", language.fixed(edge.exp(), 1)),
                     format!("chances de 1/{0} à {0}", language.fixed(edge.exp(), 1)),
+                ),
+                (EffectUnit::Chosen, edge) => {
+                    let [low, high] = [0.5 - edge, 0.5 + edge].map(|share| language.percent(share));
+                    language.pick(
+                        format!("choices from {low} to {high}, the line at {}", language.percent(0.5)),
+                        format!("choix de {low} à {high}, le trait à {}", language.percent(0.5)),
+                    )
+                }
+                (EffectUnit::Worth, edge) => language.pick(
+                    format!("±{} just noticeable differences (JND: one of two is chosen in 75 %) from the mean of all levels", language.fixed(edge, 2)),
+                    format!("±{} différences juste perceptibles (DJP : l’un des deux est choisi dans 75 %) par rapport à la moyenne des niveaux", language.fixed(edge, 2)),
                 ),
             })
             .collect();

@@ -25,8 +25,8 @@ impl Writer<'_> {
         let Some(found) = &result.equivalence else { return };
         let language = self.language();
         let names = language.pick(
-            ["median difference", "mean difference"],
-            ["différence médiane", "différence moyenne"],
+            ["Hodges-Lehmann difference", "mean difference"],
+            ["différence de Hodges-Lehmann", "différence moyenne"],
         );
         let intervals: Vec<EquivalenceInterval> = names
             .into_iter()

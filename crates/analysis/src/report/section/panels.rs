@@ -10,7 +10,7 @@ use mimique_stats::{
 use mimique_study::PanelComponent;
 use serde::Serialize;
 
-use crate::choices::tested::ROUNDS;
+use crate::choices::tested::FIT_ROUNDS;
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::comparison::{Comparison, within};
 use crate::hypothesis::reading;
@@ -216,12 +216,10 @@ impl Writer<'_> {
         levels: &[String],
     ) -> Option<PageOrder> {
         let data = self.on_one_page(block, measure, levels);
-        let [rounds, fit_rounds] = ROUNDS;
         // The first of two is the earlier condition, wherever it stood: there is no side.
         let options = BradleyTerryOptions {
             side: Some(false),
-            rounds,
-            fit_rounds,
+            fit_rounds: FIT_ROUNDS,
             ..BradleyTerryOptions::default()
         };
         let worths = bradley_terry(&data, &options).ok()?;

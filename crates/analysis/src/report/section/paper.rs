@@ -192,10 +192,13 @@ impl Writer<'_> {
                     }
                     EffectUnit::Seconds => (1.0, 2, " s"),
                     EffectUnit::Odds => (1.0, 2, ""),
+                    EffectUnit::Worth => (1.0, 2, language.pick(" JND", " DJP")),
+                    EffectUnit::Chosen => {
+                        (100.0, 0, language.pick("% of decided choices", " % des choix tranchés"))
+                    }
                 };
                 let number = |value: f64| language.fixed(value * scale, decimals);
-                let [a, b] = effect.levels;
-                let pair = self.naming.pair(factor, a, b);
+                let pair = self.effect_of(factor, effect);
                 let pair = match effect.unit {
                     EffectUnit::Odds => format!("OR ({pair})"),
                     _ => pair,

@@ -2,14 +2,16 @@
 //!
 //! The covariance is I^-1 (G / (G - 1) Σ s_g s_g') I^-1, with s_g the score summed over participant g of G
 //! (Liang and Zeger 1986). Equal worths are tested by Wald's W as F = W (G - q) / (q (G - 1)) on q = k - 1 and
-//! G - q degrees of freedom, differences by t on G - 1.
+//! G - q degrees of freedom, differences by t on G - 1; intervals are those of that t, so that a difference whose interval
+//! leaves out 0 has p < .05 and the other way round. Percentiles of resampled participants cover less than they say with few
+//! participants.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::Serialize;
 
 use super::model::Model;
 use crate::adjust::Adjustment;
-use crate::distributions::tail::{Tail, f_upper, t_two_sided};
+use crate::distributions::tail::{Tail, f_upper, t_quantile_upper, t_two_sided};
 use crate::table::comparisons::{Compared, PairedComparisons};
 
 /// Wald's test of equal worths.
@@ -47,11 +49,11 @@ pub struct WorthContrast {
     pub p_holm: Option<f64>,
     /// The difference in just noticeable differences: in units of ln 3, which 75 % of choices tell.
     pub jnd: f64,
-    /// Interval of `jnd`, from the resampled participants.
+    /// Interval of `jnd` at 95 %.
     pub jnd_interval: Option<[f64; 2]>,
     /// Share of choices of a, without ties and side.
     pub preferred: f64,
-    /// Interval of `preferred`, from the resampled participants.
+    /// Interval of `preferred` at 95 %.
     pub preferred_interval: Option<[f64; 2]>,
 }
 
@@ -94,7 +96,14 @@ pub(crate) fn equal_worths(
     Some(EqualWorths { wald, F: f, df1: q, df2, p, ln_p })
 }
 
-/// All pairs of items; intervals are filled in later.
+/// The interval at 95 % of an estimate with a standard error that is clustered by participant; none where the error is 0, as
+/// where all participants chose alike.
+pub(super) fn interval(estimate: f64, se: f64, participants: usize) -> Option<[f64; 2]> {
+    let reach = t_quantile_upper(0.025, participants.checked_sub(1)? as f64) * se;
+    (reach > 0.0).then(|| [estimate - reach, estimate + reach])
+}
+
+/// All pairs of items.
 pub(super) fn contrasts(
     names: &[String],
     worth: &[f64],
@@ -113,6 +122,7 @@ pub(super) fn contrasts(
             });
             let df = participants as f64 - 1.0;
             let p = se.filter(|se| *se > 0.0).map(|se| t_two_sided(difference / se, df).p);
+            let ends = se.and_then(|se| interval(difference, se, participants));
             WorthContrast {
                 a: names[a].clone(),
                 b: names[b].clone(),
@@ -121,9 +131,9 @@ pub(super) fn contrasts(
                 p,
                 p_holm: None,
                 jnd: difference / JND,
-                jnd_interval: None,
+                jnd_interval: ends.map(|ends| ends.map(|end| end / JND)),
                 preferred: mimique_adaptive::logistic(difference),
-                preferred_interval: None,
+                preferred_interval: ends.map(|ends| ends.map(mimique_adaptive::logistic)),
             }
         })
         .collect();

@@ -22,16 +22,16 @@ use crate::outcome::Outcome;
 use crate::refusal::{Refusal, Unfit};
 use crate::table::comparisons::{PairedComparisons, Presentation};
 use crate::undefined::NoEstimate;
-use clustered::contrasts;
 pub use clustered::{EqualWorths, WorthContrast};
 pub(crate) use clustered::{clustered_of, equal_worths};
+use clustered::{contrasts, interval};
 pub use fit_of_model::LackOfFit;
 pub(crate) use model::Model;
 use model::{Maximum, Parameters};
 pub use procedure::WORTHS_RATIO;
 pub(crate) use procedure::{PROCEDURE, SIDE, side};
 pub use resample::Resampling;
-use resample::{Resampled, origin, resampled};
+use resample::{origin, resampled};
 pub use separation::Separation;
 pub use wins::WinsTest;
 
@@ -42,7 +42,7 @@ pub struct BradleyTerryOptions {
     pub side: Option<bool>,
     /// Whether ties are answers of the model; none: wherever there are any.
     pub ties: Option<bool>,
-    /// Draws of participants for the intervals; 0: no intervals.
+    /// Draws of participants for the standard deviations over them; 0: none.
     pub rounds: usize,
     /// Draws of answers for the p of the lack of fit where expected counts are small; 0: none.
     pub fit_rounds: usize,
@@ -52,7 +52,7 @@ pub struct BradleyTerryOptions {
 
 impl Default for BradleyTerryOptions {
     fn default() -> Self {
-        Self { side: None, ties: None, rounds: 2000, fit_rounds: 999, seed: 1 }
+        Self { side: None, ties: None, rounds: 0, fit_rounds: 999, seed: 1 }
     }
 }
 
@@ -93,7 +93,7 @@ pub struct SideOrTie {
     pub se_model: f64,
     /// Standard error, clustered by participant; none with one participant.
     pub se_cluster: Option<f64>,
-    /// From the resampled participants.
+    /// Interval at 95 %, by t on participants less one and `se_cluster`.
     pub interval: Option<[f64; 2]>,
     /// Of the tie alone: Davidson's ν, the exponential.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -143,7 +143,7 @@ pub struct WorthEstimates {
     pub se_model: Vec<f64>,
     /// Their standard errors, clustered by participant; none with one participant.
     pub se_cluster: Option<Vec<f64>>,
-    /// Percentile intervals at 95 % of the worths, over resampled participants; none without draws.
+    /// Intervals at 95 % of the worths, by t on participants less one and `se_cluster`.
     pub worth_interval: Option<Vec<[f64; 2]>>,
     /// Standard deviations of the worths over resampled participants.
     pub bootstrap_sd: Option<Vec<f64>>,
@@ -281,13 +281,15 @@ fn estimates(
         let df = model.parameters() - reduced.parameters();
         LikelihoodRatio::of(log_likelihood, without(reduced), df)
     };
-    let beside = Beside { at: &at, inverse: &inverse, covariance, drawn: drawn.as_ref() };
+    let beside = Beside { at: &at, inverse: &inverse, covariance, participants };
+    let se_cluster = covariance.map(|covariance| model.worth_errors(covariance));
+    let worth_interval = se_cluster.as_ref().and_then(|errors| {
+        worth.iter().zip(errors).map(|(own, se)| interval(*own, *se, participants)).collect()
+    });
     Some(WorthEstimates {
         se_model: model.worth_errors(&inverse),
-        se_cluster: covariance.map(|covariance| model.worth_errors(covariance)),
-        worth_interval: drawn.as_ref().and_then(|drawn| {
-            (0..model.items).map(|item| drawn.interval(|draw| draw[item])).collect()
-        }),
+        se_cluster,
+        worth_interval,
         bootstrap_sd: drawn
             .as_ref()
             .and_then(|drawn| (0..model.items).map(|item| drawn.sd(|draw| draw[item])).collect()),
@@ -301,10 +303,7 @@ fn estimates(
         lr_items: ratio(Model { worths: false, ..model }),
         lr_side: model.side.then(|| ratio(Model { side: false, ..model })),
         lack_of_fit: LackOfFit::of(model, &at, shown, options.fit_rounds, options.seed),
-        contrasts: with_intervals(
-            contrasts(&data.items, &worth, covariance, participants),
-            drawn.as_ref(),
-        ),
+        contrasts: contrasts(&data.items, &worth, covariance, participants),
         worth,
     })
 }
@@ -314,50 +313,33 @@ struct Beside<'a> {
     at: &'a Parameters,
     inverse: &'a DMatrix<f64>,
     covariance: Option<&'a DMatrix<f64>>,
-    drawn: Option<&'a Resampled>,
+    participants: usize,
 }
 
 impl Beside<'_> {
-    fn of(&self, place: usize, estimate: f64, drawn_at: usize) -> SideOrTie {
+    fn of(&self, place: usize, estimate: f64) -> SideOrTie {
         let se = |covariance: &DMatrix<f64>| covariance[(place, place)].max(0.0).sqrt();
+        let se_cluster = self.covariance.map(se);
         SideOrTie {
             estimate,
             se_model: se(self.inverse),
-            se_cluster: self.covariance.map(se),
-            interval: self.drawn.and_then(|drawn| drawn.interval(|draw| draw[drawn_at])),
+            se_cluster,
+            interval: se_cluster.and_then(|se| interval(estimate, se, self.participants)),
             nu: None,
         }
     }
 
     fn side(&self, model: Model) -> Option<SideOrTie> {
         let place = model.items - 1;
-        model.side.then(|| self.of(place, model.side_bias(self.at), model.items))
+        model.side.then(|| self.of(place, model.side_bias(self.at)))
     }
 
     fn tie(&self, model: Model) -> Option<SideOrTie> {
         let estimate = model.tie(self.at);
         let nu = Some(libm::exp(estimate));
-        let of = || self.of(model.parameters() - 1, estimate, model.items + 1);
+        let of = || self.of(model.parameters() - 1, estimate);
         model.ties.then(|| SideOrTie { nu, ..of() })
     }
-}
-
-fn with_intervals(
-    mut contrasts: Vec<WorthContrast>,
-    drawn: Option<&Resampled>,
-) -> Vec<WorthContrast> {
-    let Some(drawn) = drawn else { return contrasts };
-    let pairs = {
-        // n (n - 1) / 2 contrasts are of n items.
-        let items = (1..).find(|n| n * (n - 1) / 2 == contrasts.len()).unwrap_or(0);
-        mimique_adaptive::all_pairs(items)
-    };
-    for (contrast, (a, b)) in contrasts.iter_mut().zip(pairs) {
-        let interval = drawn.interval(|draw| draw[a] - draw[b]);
-        contrast.jnd_interval = interval.map(|ends| ends.map(|end| end / clustered::JND));
-        contrast.preferred_interval = interval.map(|ends| ends.map(mimique_adaptive::logistic));
-    }
-    contrasts
 }
 
 fn penalised(model: Model, shown: &[Presentation]) -> Option<PenalisedWorths> {

@@ -4,9 +4,7 @@ use mimique_locale::{format_number, format_p};
 
 use super::{BradleyTerry, BradleyTerryOptions, DefaultTest, WorthEstimates, bradley_terry};
 use crate::outcome::Outcome;
-use crate::procedure::arguments::{
-    Arguments, Choice, DEFAULT_ROUNDS, ProcedureOption, ROUNDS, SEED,
-};
+use crate::procedure::arguments::{Arguments, Choice, ProcedureOption, SEED};
 use crate::procedure::lines::{self, Lines};
 use crate::procedure::row::{Term, TestNames, TestResult, TestRow};
 use crate::procedure::{Answer, Procedure, Sample};
@@ -14,6 +12,12 @@ use crate::refusal::Refusal;
 use crate::table::Table;
 use crate::table::comparisons::{COMPARISON_OPTIONS, PairedComparisons};
 use crate::undefined::Undefined;
+
+/// `--rounds`: how often participants are drawn again.
+const DRAWS: ProcedureOption = ProcedureOption::text(
+    "rounds",
+    "Draws of participants for the standard deviations of the worths over them [default: 0]",
+);
 
 /// `--side`.
 pub(crate) const SIDE: ProcedureOption = ProcedureOption::one_of(
@@ -40,7 +44,7 @@ pub(crate) fn side(arguments: &Arguments) -> Result<Option<bool>, Refusal> {
 pub(crate) const PROCEDURE: Procedure = Procedure {
     name: "bradley-terry",
     question: "Which items are chosen over which? Worths from paired comparisons, with ties and a side bias",
-    options: &[&COMPARISON_OPTIONS, &[SIDE, ROUNDS, SEED]],
+    options: &[&COMPARISON_OPTIONS, &[SIDE, DRAWS, SEED]],
     run,
     sample: Sample::Comparisons,
     r: r#"
@@ -174,7 +178,7 @@ def bradley_terry_ratio(participant, left, right, answer, side=True):
 fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
     let options = BradleyTerryOptions {
         side: side(arguments)?,
-        rounds: arguments.whole("rounds", DEFAULT_ROUNDS)? as usize,
+        rounds: arguments.whole("rounds", 0)? as usize,
         seed: arguments.whole("seed", 1)?,
         ..BradleyTerryOptions::default()
     };
@@ -351,9 +355,14 @@ fn estimates(lines: &mut Lines, items: &[String], found: &WorthEstimates) {
             0 => String::new(),
             draws => format!(", {draws} without a join between all items left out"),
         };
+        let sd = found.bootstrap_sd.iter().flatten().zip(items);
+        let sd: Vec<String> =
+            sd.map(|(sd, item)| format!("{item} {}", format_number(*sd))).collect();
         lines.add(format!(
-            "intervals at 95 %: {} draws of participants, {} of them separated (penalised){left_out}",
-            how.rounds, how.separated
+            "standard deviations over {} draws of participants, {} of them separated (penalised){left_out}: {}",
+            how.rounds,
+            how.separated,
+            sd.join(", ")
         ));
     }
 }

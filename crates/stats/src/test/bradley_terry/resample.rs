@@ -1,4 +1,4 @@
-//! Intervals by drawing participants with replacement, and p of the lack of fit by drawing answers from the
+//! Standard deviations by drawing participants with replacement, and p of the lack of fit by drawing answers from the
 //! model. Each draw has a random stream of its own, so that neither threads nor their number matter.
 
 use nalgebra::DVector;
@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use super::fit_of_model::{Deviance, deviance};
 use super::model::{Model, Parameters};
-use crate::estimate::resampled::percentiles;
 use crate::numerics::random::Stream;
 use crate::table::comparisons::{PairedComparisons, Presentation, parts};
 
@@ -135,11 +134,6 @@ fn one_draw(model: Model, at: &Parameters, drawn: &[Presentation]) -> Draw {
 }
 
 impl Resampled {
-    /// The percentile interval at 95 % of a function of worths, side and tie; none without draws.
-    pub fn interval(&self, of: impl Fn(&[f64]) -> f64) -> Option<[f64; 2]> {
-        percentiles(self.draws.iter().map(|draw| of(draw)).collect())
-    }
-
     /// The standard deviation over the draws of one of the worths; none with fewer than two draws.
     pub fn sd(&self, of: impl Fn(&[f64]) -> f64) -> Option<f64> {
         let values: Vec<f64> = self.draws.iter().map(|draw| of(draw)).collect();
