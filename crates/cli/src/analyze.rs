@@ -112,7 +112,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let text = std::fs::read_to_string(&args.study)
         .map_err(|error| anyhow::anyhow!("cannot be read ({error}); check the path"))
         .with_context(|| place(&args.study))?;
-    let ServedVersion { config_hash: hash, study } =
+    let ServedVersion { config_hashes, study } =
         ServedVersion::from_text(&text).with_context(|| place(&args.study))?;
     let served = served_versions(&args)?;
     let table = read_table(&args.export).with_context(|| place(&args.export))?;
@@ -126,7 +126,7 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let faces = tracks.as_ref().zip(courses.as_ref());
     let faces = faces.map(|(tracks, courses)| MeasuredFaces { tracks, courses });
     let preview = args.preview_url.as_deref();
-    let versions = StudyVersions { config_hash: Some(&hash), served: &served };
+    let versions = StudyVersions { config_hashes: &config_hashes, served: &served };
     let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions };
     let report = analyze_with(&table, &study, args.language, options).map_err(|error| {
         let file = match &error {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use mimique_study::{answered_hash, config_hash, published};
+use mimique_study::{config_hash, published};
 use serde_json::{Value, json};
 
 use crate::file::{DepositFile, NotWritten, json_bytes};
@@ -88,7 +88,7 @@ pub fn deposited(file: &Value, sources: &[StudySource]) -> (Value, Changed) {
         .collect();
     lead(&mut value, &moved);
     let value = published(file, value);
-    let (served_hash, deposited_hash) = (answered_hash(file), config_hash(&value));
+    let (served_hash, deposited_hash) = (config_hash(file), config_hash(&value));
     (value, Changed { removed, served_hash, deposited_hash })
 }
 

@@ -38,7 +38,7 @@ pub use pair_drawing::{DrawnPairs, OwnChoice, PairCount, PairCounts, PairRequest
 pub use pairs::AnswerOfPair;
 pub use practice::right_answers;
 pub use projection::StudyProjection;
-pub use published::{answered_hash, published};
+pub use published::{answer_hashes, published};
 pub use question::{
     AttentionCheck, BestWorst, Chance, Choice, ChoiceView, Comparison, Condition, Grid,
     KindOfQuestion, LONG_TEXT, Likert, LongText, Matrix, MultipleChoice, NumberField, OptionOrder,

@@ -47,12 +47,12 @@ pub fn analyze(
     preview: &str,
     language: &str,
 ) -> Result<WebReport, JsError> {
-    let ServedVersion { config_hash, study } = ServedVersion::from_text(study)?;
+    let ServedVersion { config_hashes, study } = ServedVersion::from_text(study)?;
     let served = match published {
         "" => Vec::new(),
         text => vec![ServedVersion::from_text(text)?],
     };
-    let versions = StudyVersions { config_hash: Some(&config_hash), served: &served };
+    let versions = StudyVersions { config_hashes: &config_hashes, served: &served };
     let table = Table::parse(export)?;
     let stimuli = match stimuli {
         "" => None,

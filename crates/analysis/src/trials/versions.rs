@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_stats::Table;
-use mimique_study::{Question, Study, StudyFileError, answered_hash};
+use mimique_study::{Question, Study, StudyFileError, answer_hashes};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -16,28 +16,28 @@ use crate::trials::error::ExportError;
 /// A study file that was served, as exports in Psych-DS form carry it.
 #[derive(Debug, Clone)]
 pub struct ServedVersion {
-    /// SHA-256 of its canonical text.
-    pub config_hash: String,
+    /// Each `config_hash` that its answers can have.
+    pub config_hashes: Vec<String>,
     /// The file, read.
     pub study: Study,
 }
 
 impl ServedVersion {
-    /// Reads a study file; its hash is that of the answers to it.
+    /// Reads a study file.
     ///
     /// # Errors
     /// [`StudyFileError`]: no JSON, or no study.
     pub fn from_text(text: &str) -> Result<Self, StudyFileError> {
         let file = mimique_study::parse(text)?;
-        Ok(Self { config_hash: answered_hash(&file), study: Study::from_value(&file)? })
+        Ok(Self { config_hashes: answer_hashes(&file), study: Study::from_value(&file)? })
     }
 }
 
 /// The study file of the analysis and those that were served.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StudyVersions<'a> {
-    /// Hash of the file of the analysis; without it nothing is compared.
-    pub config_hash: Option<&'a str>,
+    /// Each `config_hash` that answers to the file of the analysis can have; without any nothing is compared.
+    pub config_hashes: &'a [String],
     /// Versions of which the file is known.
     pub served: &'a [ServedVersion],
 }
@@ -79,9 +79,11 @@ pub(crate) fn other_versions(
     study: &Study,
     versions: StudyVersions<'_>,
 ) -> Result<Vec<OtherVersion>, ExportError> {
-    let Some(own) = versions.config_hash.filter(|_| table.has("config_hash")) else {
+    let own = versions.config_hashes;
+    if own.is_empty() || !table.has("config_hash") {
         return Ok(Vec::new());
-    };
+    }
+    let is_own = |hash: &&str| own.iter().any(|own| own == *hash);
     let [hash, participant, stage] =
         ["config_hash", "participant_id", "stage"].map(|name| Column::of(table, name));
     // Pilot sessions take no part once there are live ones, and often precede the last changes.
@@ -89,13 +91,14 @@ pub(crate) fn other_versions(
     let all_pilot = (0..table.rows()).all(is_pilot);
     let mut people: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for row in (0..table.rows()).filter(|row| all_pilot || !is_pilot(*row)) {
-        if let Some(hash) = hash.text(row).filter(|hash| *hash != own) {
+        if let Some(hash) = hash.text(row).filter(|hash| !is_own(hash)) {
             people.entry(hash).or_default().extend(participant.text(row));
         }
     }
     let mut others = Vec::new();
     for (hash, people) in people {
-        let served = versions.served.iter().find(|version| version.config_hash == hash);
+        let served = (versions.served.iter())
+            .find(|version| version.config_hashes.iter().any(|own| own == hash));
         let another = match served {
             Some(version) => version.study.id != study.id,
             None => !has_trials_of(table, study, hash),

@@ -29,7 +29,7 @@ fn report(
     served: &[ServedVersion],
     language: Language,
 ) -> Result<Report, ExportError> {
-    let versions = StudyVersions { config_hash: Some(OWN), served };
+    let versions = StudyVersions { config_hashes: &[OWN.to_owned()], served };
     let options = ReportOptions { versions, ..ReportOptions::default() };
     analyze_with(&Table::parse(csv.as_bytes()).unwrap(), study, language, options)
 }
@@ -46,7 +46,7 @@ fn another_version_is_shown_with_what_differs() {
     served.exclusions.as_mut().unwrap().late_frame_share = Some(0.1);
     served.hypotheses[1].response = "believability".to_owned();
     served.hypotheses.remove(3);
-    let served = [ServedVersion { config_hash: OTHER.to_owned(), study: served }];
+    let served = [ServedVersion { config_hashes: vec![OTHER.to_owned()], study: served }];
     for (language, lines) in [
         (
             Language::English,
@@ -99,7 +99,7 @@ fn another_study_is_refused() {
     // Known by its file.
     let mut other = study.clone();
     other.id = "another".to_owned();
-    let served = [ServedVersion { config_hash: OTHER.to_owned(), study: other }];
+    let served = [ServedVersion { config_hashes: vec![OTHER.to_owned()], study: other }];
     let error = report(&mixed(&study), &study, &served, Language::English).unwrap_err();
     let words = error.to_string();
     assert!(words.contains("config_hash") && words.contains("\"another\""), "{words}");

@@ -32,7 +32,7 @@ use mimique_server::{Assets, EmbeddedFile, HostedStudy, Hosting, Stage};
 use mimique_session::flow::Plays;
 use mimique_session::rows::TidyForm;
 use mimique_stats::Table;
-use mimique_study::{CheckedStudy, StaticHosting, Study, answered_hash, published};
+use mimique_study::{CheckedStudy, StaticHosting, Study, answer_hashes, published};
 use serde_json::{Value, json};
 
 use crate::analyze::language;
@@ -234,8 +234,8 @@ impl Capsule<'_> {
         let table = Table::parse(csv)?;
         let shown = !self.study().clips().is_empty();
         let stimuli = shown.then(|| Table::parse(stimuli)).transpose()?;
-        let hash = answered_hash(self.checked.value());
-        let versions = StudyVersions { config_hash: Some(&hash), served: &[] };
+        let hashes = answer_hashes(self.checked.value());
+        let versions = StudyVersions { config_hashes: &hashes, served: &[] };
         // What was measured of faces says much of a person, and is not shared.
         let options = ReportOptions {
             stimuli: stimuli.as_ref(),

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::support::{mimique, ok, text};
+use crate::support::{mimique, ok, refused, text};
 
 fn demo() -> String {
     text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../study-config/demo.json"))
@@ -84,4 +84,64 @@ fn points_lead_to_the_preview_that_is_named() {
         let said = String::from_utf8_lossy(&refused.stderr).into_owned();
         assert!(said.contains(wrong) && said.contains("give the whole address"), "{said}");
     }
+}
+
+/// The demonstration with another rule for late frames, as a file, and answers of simulated people to it.
+fn other_version(folder: &Path) -> [String; 2] {
+    let mut file: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(demo()).unwrap()).unwrap();
+    file["exclusions"]["lateFrameShare"] = serde_json::json!(0.05);
+    let versions = folder.join("versions");
+    std::fs::create_dir(&versions).unwrap();
+    let version = versions.join("spring.json");
+    std::fs::write(&version, file.to_string()).unwrap();
+    let simulated = folder.join("simulated");
+    let (version, out) = (text(&version), text(&simulated));
+    ok(&["simulate", &version, "-n", "8", "--seed", "1", "--out", &out]);
+    [text(&versions), text(&simulated.join("demo_responses.csv"))]
+}
+
+#[test]
+fn versions_that_were_served_are_read_from_the_folder_that_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let [versions, export] = other_version(folder.path());
+    let out = folder.path().join("report");
+    let written = || std::fs::read_to_string(out.join("report.md")).unwrap();
+    let study = demo();
+    let report = text(&out);
+    let analyze = ["analyze", &export, "--study", &study, "--out", &report];
+    ok(&analyze);
+    assert!(written().contains("8 participants answered another version of this study"));
+    assert!(written().contains("The file of that version is not known here"));
+    ok(&[&analyze[..], &["--versions", &versions]].concat());
+    assert!(written().contains("rule lateFrameShare (served: 0.05; here: 0.2)"), "{}", written());
+    // A file among them that is no study is named, and nothing is written.
+    let broken = Path::new(&versions).join("broken.json");
+    std::fs::write(&broken, "{").unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    let said = refused(&[&analyze[..], &["--versions", &versions]].concat());
+    assert!(said.contains(&text(&broken)), "{said}");
+    let nowhere = text(&folder.path().join("nowhere"));
+    let said = refused(&[&analyze[..], &["--versions", &nowhere]].concat());
+    assert!(said.contains(&nowhere) && said.contains("check the path"), "{said}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn answers_to_a_published_file_that_is_served_again_are_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = std::fs::read_to_string(demo()).unwrap();
+    let demonstration: serde_json::Value = serde_json::from_str(&read).unwrap();
+    let mut served = demonstration.clone();
+    served["title"] = serde_json::json!("As it was served first");
+    let published = mimique_study::published(&served, demonstration);
+    let file = folder.path().join("study.json");
+    std::fs::write(&file, published.to_string()).unwrap();
+    let (file, simulated) = (text(&file), folder.path().join("simulated"));
+    let out = folder.path().join("report");
+    ok(&["simulate", &file, "-n", "8", "--seed", "1", "--out", &text(&simulated)]);
+    let export = text(&simulated.join("demo_responses.csv"));
+    ok(&["analyze", &export, "--study", &file, "--out", &text(&out)]);
+    let report = std::fs::read_to_string(out.join("report.md")).unwrap();
+    assert!(!report.contains("another version"), "the answers are to this file");
 }

@@ -63,12 +63,12 @@ impl Reports {
         let served: Vec<ServedVersion> = sources
             .versions
             .into_iter()
-            .map(|own| ServedVersion { config_hash: own.config_hash, study: own.study })
+            .map(|own| ServedVersion { config_hashes: vec![own.config_hash], study: own.study })
             .collect();
-        let hash = study.config_hash().to_owned();
+        let hashes = [study.config_hash().to_owned()];
         let (study, preview) = (study.study().clone(), preview.to_owned());
         let made = tokio::task::spawn_blocking(move || {
-            let versions = StudyVersions { config_hash: Some(&hash), served: &served };
+            let versions = StudyVersions { config_hashes: &hashes, served: &served };
             make(&csv, &stimuli, faces.as_ref(), (&study, versions), language, &preview)
         });
         let report = made.await.map_err(Error::internal)??;

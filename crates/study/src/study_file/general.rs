@@ -164,8 +164,9 @@ pub struct Section {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Published {
-    /// Hash of the file that was served: the column `config_hash` of its answers.
-    pub served_hash: String,
+    /// Hashes of the files that were served, the latest last: the column `config_hash` of their answers. Several where a
+    /// published file was served again.
+    pub served_hashes: Vec<String>,
     /// Hash of this file without this key: where they differ, the file was changed afterwards and is another version.
     pub published_hash: String,
 }

@@ -10,7 +10,7 @@ use mimique_analysis::{Parameters, ReportOptions, Simulation, StudyVersions, ana
 use mimique_locale::Language;
 use mimique_server::export::{Format, Unstored};
 use mimique_stats::Table;
-use mimique_study::{Study, answered_hash};
+use mimique_study::{Study, answer_hashes};
 use mimique_test_support::{repository, study_text, web_module};
 use serde_json::{Value, json};
 
@@ -27,8 +27,8 @@ fn case(name: &str, people: u64, language: Language, change: impl Fn(&mut Value)
     let exported = writer.join(written.unwrap()).unwrap();
     let csv = String::from_utf8(exported.files[0].1.clone()).unwrap();
     let table = Table::parse(csv.as_str()).unwrap();
-    let hash = answered_hash(&file);
-    let versions = StudyVersions { config_hash: Some(&hash), served: &[] };
+    let hashes = answer_hashes(&file);
+    let versions = StudyVersions { config_hashes: &hashes, served: &[] };
     let options =
         ReportOptions { preview: Some("../index.html"), versions, ..ReportOptions::default() };
     let report = analyze_with(&table, &study, language, options).unwrap();
