@@ -1,5 +1,6 @@
 //! What the report says of agreement and of scales.
 
+use mimique_locale::{counted, counted_in_french};
 use mimique_report::document::{Block, DataTable, slug};
 use mimique_stats::{
     AlphaEstimate, Cronbach, IccForm, IntraclassCorrelation, MeasurementLevel as Level, Outcome,
@@ -151,8 +152,11 @@ impl Writer<'_> {
         let dropped = match icc.clips_dropped {
             0 => String::new(),
             dropped => language.pick(
-                format!(" {dropped} clips that somebody did not rate are left out."),
-                format!(" {dropped} extraits que quelqu’un n’a pas notés sont écartés."),
+                format!(" Left out as not rated by everybody: {}.", counted(dropped, "clip")),
+                format!(
+                    " Écartés, car pas notés par tout le monde : {}.",
+                    counted_in_french(dropped, "extrait", "extraits")
+                ),
             ),
         };
         language.pick(
@@ -237,10 +241,10 @@ impl Writer<'_> {
             ),
         );
         if found.dropped > 0 {
-            let dropped = found.dropped;
+            let dropped = people_counted(language, found.dropped);
             text += &language.pick(
-                format!(" {dropped} people have not answered all of them."),
-                format!(" {dropped} personnes n’ont pas répondu à toutes."),
+                format!(" Without an answer to one of them, and left out: {dropped}."),
+                format!(" Sans réponse à l’une d’elles, et écartées : {dropped}."),
             );
         }
         if scale.of_means {

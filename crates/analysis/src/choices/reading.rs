@@ -1,6 +1,6 @@
 //! Choices between the levels of a factor in plain words.
 
-use mimique_locale::Language;
+use mimique_locale::{Language, counted_as, counted_in_french};
 use mimique_stats::{Outcome, WorthContrast, WorthEstimates};
 
 use super::preference::{Preference, preference};
@@ -87,8 +87,14 @@ fn of_two(
         )
     });
     let people = language.pick(
-        format!("more often by {for_more} of {n} people who did not choose both equally often"),
-        format!("plus souvent par {for_more} des {n} personnes qui n’ont pas choisi les deux aussi souvent"),
+        format!(
+            "more often by {for_more} of {} who did not choose both equally often",
+            people_counted(language, n)
+        ),
+        format!(
+            "plus souvent par {for_more} sur {} ayant choisi l’un des deux plus souvent",
+            people_counted(language, n)
+        ),
     );
     let p = language.p(line.p_that_counts());
     if line.p_that_counts() < LEVEL {
@@ -176,8 +182,14 @@ fn pairs(naming: &Naming<'_>, factor: &str, estimates: &WorthEstimates) -> Vec<S
     } else if !open.is_empty() {
         let count = open.len();
         sentences.push(language.pick(
-            format!("Of the other {count} pairs no preference was shown."),
-            format!("Pour les {count} autres paires, aucune préférence n’a été montrée."),
+            format!(
+                "No preference was shown in {}.",
+                counted_as(count, "other pair", "other pairs")
+            ),
+            format!(
+                "Aucune préférence n’a été montrée pour {}.",
+                counted_in_french(count, "autre paire", "autres paires")
+            ),
         ));
     }
     sentences

@@ -1,5 +1,6 @@
 //! What the report says of blocks of reverse correlation.
 
+use mimique_locale::{counted, counted_in_french};
 use mimique_report::document::{Block, DataTable, Figure, slug};
 use mimique_stats::{CategoryImages, GroupImage, UnitCourse};
 
@@ -50,8 +51,8 @@ impl Writer<'_> {
         if found.not_replayed > 0 {
             let count = found.not_replayed;
             self.blocks.push(Block::Caution(language.pick(
-                format!("Error: the weights that were shown in {count} trials are not those that the seed gives again. These trials are left out; look at the column weights_expected."),
-                format!("Erreur : les poids montrés dans {count} essais ne sont pas ceux que la graine redonne. Ces essais sont écartés ; voyez la colonne weights_expected."),
+                format!("Error: the weights that were shown in {} are not those that the seed gives again. What was shown so is left out; look at the column weights_expected.", counted(count, "trial")),
+                format!("Erreur : les poids montrés dans {} ne sont pas ceux que la graine redonne. Ce qui a été montré ainsi est écarté ; voyez la colonne weights_expected.", counted_in_french(count, "essai", "essais")),
             )));
         }
         let head = DrawnHead::new();
@@ -71,7 +72,9 @@ impl Writer<'_> {
             ).to_owned()));
             return;
         };
-        let (answers, people) = (category.answers, category.people);
+        let answers =
+            language.counted(category.answers, ["answer", "answers"], ["réponse", "réponses"]);
+        let people = category.people;
         let seen = group.units.iter().filter(|unit| is_present(unit));
         let seen: Vec<String> = seen.map(|unit| unit.unit.clone()).collect();
         let units = if seen.is_empty() {
@@ -80,8 +83,14 @@ impl Writer<'_> {
             seen.join(", ")
         };
         self.blocks.push(Block::Reading(language.pick(
-            format!("{name} ({answers} answers, {}): more often answered where the face shows {units}.", people_counted(language, people)),
-            format!("{name} ({answers} réponses, {}) : plus souvent répondu quand le visage montre {units}.", people_counted(language, people)),
+            format!(
+                "{name} ({answers}, {}): more often answered where the face shows {units}.",
+                people_counted(language, people)
+            ),
+            format!(
+                "{name} ({answers}, {}) : plus souvent répondu quand le visage montre {units}.",
+                people_counted(language, people)
+            ),
         )));
         self.image_figure(found, &name, category, &group);
         self.unit_table(found, &name, category, &group);

@@ -129,10 +129,8 @@ pub(crate) fn test_hypothesis(
     };
     let Read { trials, people, equivalence, mut reading } = read;
     if trials_without_level > 0 {
-        reading += &language.pick(
-            format!(" {trials_without_level} trials have no value of the factor and take no part."),
-            format!(" {trials_without_level} essais n’ont pas de valeur du facteur et ne prennent pas part au test."),
-        );
+        reading.push(' ');
+        reading += &reading::trials_without_level(language, trials_without_level);
     }
     let matching = measure.as_ref().and_then(|measure| matching_of(export, hypothesis, measure));
     if let Some(words) = matching.as_ref().and_then(|matching| reading::unmatched(naming, matching))

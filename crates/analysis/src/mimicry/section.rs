@@ -48,7 +48,8 @@ impl Writer<'_> {
     fn found_mimicry(&mut self, found: &MimicryResult) {
         let language = self.language();
         let all = &found.all;
-        let (people, plays) = (all.participants, all.n);
+        let people = all.participants;
+        let plays = language.counted(all.n, ["play", "plays"], ["lecture", "lectures"]);
         let surrogates = match all.kind {
             Surrogates::OtherClips => language.pick(
                 "what a person did is held against the clips that the same person saw, dealt anew over that person’s plays",
@@ -61,8 +62,8 @@ impl Writer<'_> {
         };
         let (count, seed) = (all.surrogates, all.seed);
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("How the faces of {} went with the faces that they saw, in {plays} plays: Pearson’s correlation of each shape’s weight in the clip with its score in the person’s face, at lags from −0.5 to 1.5 s, over shapes that the clip moves (gaze and blinks left out); the mean of Fisher’s z over shapes, then plays, then people (lagged cross-correlation: Boker et al. 2002). The test takes the highest value over all lags. In {count} surrogates (seed {seed}) {surrogates} (Moulder et al. 2018); p is corrected over lags, since the highest value is taken in the surrogates, too. A correlation says that faces went together in time; it says neither how strongly they moved nor why.", people_counted(language, people)),
-            format!("Comment les visages de {} ont suivi ceux qu’elles voyaient, en {plays} lectures : corrélation de Pearson du poids de chaque forme dans l’extrait avec son score dans le visage de la personne, aux décalages de −0,5 à 1,5 s, sur les formes que l’extrait anime (regard et clignements exclus) ; moyenne du z de Fisher sur les formes, puis les lectures, puis les personnes (corrélation croisée décalée : Boker et coll. 2002). Le test prend la plus haute valeur sur tous les décalages. Dans {count} substituts (graine {seed}), {surrogates} (Moulder et coll. 2018) ; p est corrigé pour les décalages, puisque la plus haute valeur est prise aussi dans les substituts. Une corrélation dit que les visages allaient ensemble dans le temps ; elle ne dit ni l’ampleur des mouvements, ni leur cause.", people_counted(language, people)),
+            format!("How the faces of {} went with the faces that they saw, in {plays}: Pearson’s correlation of each shape’s weight in the clip with its score in the person’s face, at lags from −0.5 to 1.5 s, over shapes that the clip moves (gaze and blinks left out); the mean of Fisher’s z over shapes, then plays, then people (lagged cross-correlation: Boker et al. 2002). The test takes the highest value over all lags. In {count} surrogates (seed {seed}) {surrogates} (Moulder et al. 2018); p is corrected over lags, since the highest value is taken in the surrogates, too. A correlation says that faces went together in time; it says neither how strongly they moved nor why.", people_counted(language, people)),
+            format!("Comment les visages de {} ont suivi ceux qu’elles voyaient, en {plays} : corrélation de Pearson du poids de chaque forme dans l’extrait avec son score dans le visage de la personne, aux décalages de −0,5 à 1,5 s, sur les formes que l’extrait anime (regard et clignements exclus) ; moyenne du z de Fisher sur les formes, puis les lectures, puis les personnes (corrélation croisée décalée : Boker et coll. 2002). Le test prend la plus haute valeur sur tous les décalages. Dans {count} substituts (graine {seed}), {surrogates} (Moulder et coll. 2018) ; p est corrigé pour les décalages, puisque la plus haute valeur est prise aussi dans les substituts. Une corrélation dit que les visages allaient ensemble dans le temps ; elle ne dit ni l’ampleur des mouvements, ni leur cause.", people_counted(language, people)),
         )));
         let (r, lag, p) = (
             language.fixed(all.highest_r, 3),

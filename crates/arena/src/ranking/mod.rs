@@ -86,7 +86,7 @@ pub struct Placed {
     pub ranks: [usize; 2],
     /// Its worth in just noticeable differences, the mean of all being 0.
     pub worth: f64,
-    /// Its interval at 95 %, of this method alone, over resampled participants.
+    /// Its interval at 95 %, of this method alone, by t with errors clustered by participant.
     pub interval: Option<[f64; 2]>,
 }
 

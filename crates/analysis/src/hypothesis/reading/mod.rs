@@ -218,6 +218,15 @@ pub(crate) fn over_hypotheses(
     )
 }
 
+/// Trials of a method that does not have a parameter take no part in a comparison of its values.
+pub(crate) fn trials_without_level(language: Language, trials: usize) -> String {
+    let trials = language.counted(trials, ["trial", "trials"], ["essai", "essais"]);
+    language.pick(
+        format!("Without a value of the factor (their method has no such parameter), and left out here: {trials}."),
+        format!("Sans valeur du facteur (leur méthode n’a pas ce paramètre), et écartés ici : {trials}."),
+    )
+}
+
 /// Said wherever trial-level tests stand.
 pub(crate) fn trial_level_caution(language: Language) -> &'static str {
     language.pick(

@@ -1,6 +1,6 @@
 //! Pairs of levels in plain words.
 
-use mimique_locale::Language;
+use mimique_locale::{Language, counted};
 use mimique_stats::{Outcome, median};
 
 use super::{LEVEL, difference, unit};
@@ -61,8 +61,8 @@ pub(super) fn many_pairs(
         })
         .collect();
     let count = language.pick(
-        format!("{} of {tested} pairs differ after Holm’s correction:", different.len()),
-        format!("{} paires sur {tested} diffèrent après correction de Holm :", different.len()),
+        format!("Of {}, different after Holm’s correction:", counted(tested, "pair")),
+        format!("Différentes après correction de Holm, sur {tested} :"),
     );
     vec![count, format!("{}.", words.join(", "))]
 }

@@ -67,9 +67,10 @@ impl<'a> Writer<'a> {
         self.blocks.push(Block::Heading(2, title));
         let said = |word: &str| answers.iter().filter(|answer| &*answer.text == word).count();
         let [left, right, same] = ["left", "right", "same"].map(said);
+        let left = language.counted(left, ["answer", "answers"], ["réponse a", "réponses ont"]);
         self.blocks.push(Block::Paragraph(language.pick(
-            format!("{left} answers chose the clip on the left, {right} the one on the right, {same} neither. The tables of counts count trials; the recommended tests know that the choices of one person belong together."),
-            format!("{left} réponses ont choisi l’extrait de gauche, {right} celui de droite, {same} aucun des deux. Les tableaux d’effectifs comptent des essais ; les tests recommandés savent que les choix d’une personne vont ensemble."),
+            format!("{left} chose the clip on the left, {right} the one on the right, {same} neither. The tables of counts count trials; the recommended tests know that the choices of one person belong together."),
+            format!("{left} choisi l’extrait de gauche, {right} celui de droite, {same} aucun des deux. Les tableaux d’effectifs comptent des essais ; les tests recommandés savent que les choix d’une personne vont ensemble."),
         )));
         let clips = self.study.clips();
         let clips: HashMap<&str, &Clip> =

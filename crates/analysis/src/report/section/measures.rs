@@ -131,10 +131,8 @@ impl Writer<'_> {
         self.blocks
             .push(Block::Heading(3, language.pick(format!("By {shown}"), format!("Par {shown}"))));
         if without > 0 {
-            self.blocks.push(Block::Paragraph(language.pick(
-                format!("{without} trials have no value of {shown} (their method has no such parameter): they take no part in this comparison."),
-                format!("{without} essais n’ont pas de valeur de {shown} (leur méthode n’a pas ce paramètre) : ils ne prennent pas part à cette comparaison."),
-            )));
+            let words = reading::trials_without_level(language, without);
+            self.blocks.push(Block::Paragraph(words));
         }
         let words = reading::comparison(&self.naming, &result, &measure.label);
         let unmatched = reading::unmatched(&self.naming, &result.matching);

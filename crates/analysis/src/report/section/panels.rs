@@ -16,6 +16,7 @@ use crate::hypothesis::comparison::{Comparison, within};
 use crate::hypothesis::reading;
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::undefined::TestOutcome;
+use crate::naming::people_counted;
 use crate::report::figure;
 use crate::report::section::Writer;
 use crate::report::section::measures::values_by_level;
@@ -122,15 +123,16 @@ impl Writer<'_> {
         let found = &screening.found;
         let out: Vec<&ScreenedPerson> =
             found.people.iter().filter(|person| person.excluded).collect();
-        let (of, count) = (found.people.len(), out.len());
+        let of = people_counted(language, found.people.len());
+        let count = out.len();
         self.blocks.push(Block::Paragraph(match screening.applied {
             true => language.pick(
-                format!("{count} of {of} people are left out of the analysis by ITU-R BS.1534-3 (section 4.1.2): they rate the hidden reference below 90, or the anchor above 90, on more than 15 % of the pages."),
-                format!("{count} personnes sur {of} sont écartées de l’analyse selon l’UIT-R BS.1534-3 (section 4.1.2) : elles notent la référence cachée au-dessous de 90, ou l’ancre au-dessus de 90, sur plus de 15 % des pages."),
+                format!("ITU-R BS.1534-3 (section 4.1.2) leaves {count} of {of} out of the analysis, who rate the hidden reference below 90, or the anchor above 90, on more than 15 % of the pages."),
+                format!("L’UIT-R BS.1534-3 (section 4.1.2) écarte de l’analyse {count} sur {of}, pour avoir noté la référence cachée au-dessous de 90, ou l’ancre au-dessus de 90, sur plus de 15 % des pages."),
             ),
             false => language.pick(
-                format!("ITU-R BS.1534-3 (section 4.1.2) would leave out {count} of {of} people: they rate the hidden reference below 90, or the anchor above 90, on more than 15 % of the pages. The study file does not apply the rule, and nobody is left out by it."),
-                format!("L’UIT-R BS.1534-3 (section 4.1.2) écarterait {count} personnes sur {of} : elles notent la référence cachée au-dessous de 90, ou l’ancre au-dessus de 90, sur plus de 15 % des pages. Le fichier de l’étude n’applique pas cette règle ; personne n’est écarté par elle."),
+                format!("ITU-R BS.1534-3 (section 4.1.2) would leave out {count} of {of}, who rate the hidden reference below 90, or the anchor above 90, on more than 15 % of the pages. The study file does not apply the rule, and nobody is left out by it."),
+                format!("L’UIT-R BS.1534-3 (section 4.1.2) écarterait {count} sur {of}, pour avoir noté la référence cachée au-dessous de 90, ou l’ancre au-dessus de 90, sur plus de 15 % des pages. Le fichier de l’étude n’applique pas cette règle ; personne n’est écarté par elle."),
             ),
         }));
         let without = found.segments_without_anchor_rule.join(", ");

@@ -113,10 +113,17 @@ impl Writer<'_> {
             .iter()
             .map(|method| self.naming.level("method", method))
             .collect();
-        let (shown, methods, names) = (shown.len(), methods.len(), methods.join(", "));
+        let (shown, names) = (shown.len(), methods.join(", "));
+        let segments = language.counted(
+            segments,
+            ["performance", "performances"],
+            ["interprétation", "interprétations"],
+        );
+        let methods =
+            language.counted(methods.len(), ["method", "methods"], ["méthode", "méthodes"]);
         language.pick(
-            format!("They saw clips out of {shown}, of {segments} performances by {methods} methods ({names}), which Mimique solved and rendered in the browser, all with the same camera, light and duration of a performance, in an order drawn for each person."),
-            format!("Elles ont vu des extraits parmi {shown}, de {segments} interprétations par {methods} méthodes ({names}), que Mimique a résolus et rendus dans le navigateur, tous avec la même caméra, la même lumière et la même durée par interprétation, dans un ordre tiré pour chacune."),
+            format!("They saw clips out of {shown}, of {segments} by {methods} ({names}), which Mimique solved and rendered in the browser, all with the same camera, light and duration of a performance, in an order drawn for each person."),
+            format!("Elles ont vu des extraits parmi {shown}, de {segments} par {methods} ({names}), que Mimique a résolus et rendus dans le navigateur, tous avec la même caméra, la même lumière et la même durée par interprétation, dans un ordre tiré pour chacune."),
         )
     }
 
