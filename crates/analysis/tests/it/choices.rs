@@ -141,7 +141,7 @@ fn the_first_screen_has_the_ranking() {
     assert!(places.is_sorted(), "{screen}");
     assert!(screen.contains(" JND \\["), "{screen}");
     let page = file(&own, "report.html");
-    assert!(page.contains("just noticeable differences (JND: one of two is chosen in 75 %)"));
+    assert!(page.contains("just noticeable differences (JND: one of two is chosen in 75"));
     let reading = &own.readings[0].1;
     let order = "From the most to the least chosen: Real face, LSTS30, Box (baseline).";
     assert!(reading.contains(order), "{reading}");

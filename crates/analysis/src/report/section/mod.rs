@@ -230,8 +230,8 @@ fn heading(export: &Export, study: &Study, language: Language) -> (String, Strin
     (title, subtitle)
 }
 
-/// Factors with two levels or more among the trials, those that the methods set first. Of two factors that part the
-/// trials alike only the first is kept.
+/// Factors with two levels or more among the trials, those that the methods set first. A factor whose level
+/// follows from that of another one before it (as a parameter's from the method's) is left out.
 fn factors_in_use(export: &Export, study: &Study) -> Vec<String> {
     // What the methods set is compared; then what was played, in the order that people name it.
     let clips = study.clips();
