@@ -68,6 +68,8 @@ pub enum Sample {
     PeopleAndSegments,
     /// The same, of a model that peers fit by a search.
     MixedModel,
+    /// The same with any numbers in the place of ratings.
+    LinearMixedModel,
     /// Differences of pairs, lower and upper bound.
     Equivalence,
     /// A matrix of ratings: one row per clip, one column per rater.
@@ -83,7 +85,7 @@ pub enum Sample {
 }
 
 /// Every procedure, in the order of the help text.
-pub static PROCEDURES: [&Procedure; 28] = [
+pub static PROCEDURES: [&Procedure; 29] = [
     &kruskal_wallis::PROCEDURE,
     &wilcoxon::PROCEDURE,
     &sign::PROCEDURE,
@@ -95,6 +97,7 @@ pub static PROCEDURES: [&Procedure; 28] = [
     &aligned_rank_transform::PROCEDURE,
     &min_f::PROCEDURE,
     &mixed_model::PROCEDURE,
+    &mixed_model::linear::PROCEDURE,
     &equivalence::PROCEDURE,
     &bradley_terry::PROCEDURE,
     &thurstone::PROCEDURE,

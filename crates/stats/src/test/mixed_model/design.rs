@@ -7,7 +7,7 @@ use std::ops::Range;
 use crate::table::factor::Factor;
 
 /// Most effects of a block that is eliminated: beyond it a block costs more than it saves.
-const LARGEST_BLOCK: usize = 64;
+const LARGEST_BLOCK: usize = 128;
 
 /// A fixed effect: a factor, or the interaction of several, by their places among the factors.
 pub(super) type FixedTerm = Vec<usize>;
@@ -152,19 +152,19 @@ impl Layout {
     }
 }
 
-/// The groupings that are eliminated: one after the other each is part of the next, and they hold the most effects.
+/// The groupings that are eliminated: each is part of the last, the coarsest, and they hold the most effects.
 fn family(groupings: &[&Factor]) -> Vec<usize> {
     let levels = |term: &usize| groupings[*term].levels.len();
     let mut best: Vec<usize> = Vec::new();
-    for finest in 0..groupings.len() {
-        let mut own = vec![finest];
-        let mut coarser: Vec<usize> = (0..groupings.len()).filter(|term| *term != finest).collect();
-        coarser.sort_by_key(|term| std::cmp::Reverse(levels(term)));
-        for term in coarser {
-            let parts = own.iter().all(|finer| is_part(groupings[*finer], groupings[term]));
-            let mut joined = own.clone();
-            joined.push(term);
-            if parts && largest_block(groupings, &joined) <= LARGEST_BLOCK {
+    for coarsest in 0..groupings.len() {
+        let mut finer: Vec<usize> = (0..groupings.len()).filter(|term| *term != coarsest).collect();
+        finer.retain(|term| is_part(groupings[*term], groupings[coarsest]));
+        finer.sort_by_key(|term| std::cmp::Reverse(levels(term)));
+        let mut own = vec![coarsest];
+        for term in finer.into_iter().rev() {
+            let mut joined = vec![term];
+            joined.extend(&own);
+            if largest_block(groupings, &joined) <= LARGEST_BLOCK {
                 own = joined;
             }
         }

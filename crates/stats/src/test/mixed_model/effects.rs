@@ -130,6 +130,36 @@ impl Factored {
         }
     }
 
+    /// The diagonal of the inverse, an effect each.
+    pub(super) fn inverse_diagonal(&self, layout: &Layout) -> Vec<f64> {
+        let rest = layout.in_rest;
+        let mut diagonal = vec![0.0; layout.size()];
+        let mut start = 0;
+        let mut y = Vec::new();
+        for block in &layout.blocks {
+            let size = block.size;
+            let lower = &self.blocks[start..start + size * size];
+            start += size * size;
+            let own = inverse(lower, size);
+            // With Y = B^-1 A the block's part of the inverse is B^-1 + Y S^-1 Y'.
+            y.clear();
+            y.extend_from_slice(&self.cross[block.first * rest..(block.first + size) * rest]);
+            to_inverse(lower, size, &mut y);
+            for (i, row) in y.chunks_exact_mut(rest.max(1)).enumerate() {
+                forward(&self.rest, rest, row);
+                diagonal[block.first + i] = dot(row, row);
+            }
+            for i in 0..size {
+                diagonal[block.first + i] += own[i * size + i];
+            }
+        }
+        let of_rest = inverse(&self.rest, rest);
+        for i in 0..rest {
+            diagonal[layout.in_blocks + i] = of_rest[i * rest + i];
+        }
+        diagonal
+    }
+
     /// For each answer, its place and the inverse between the effects that it has: terms x terms.
     pub(super) fn covariances(&self, layout: &Layout, mut each: impl FnMut(usize, &[f64])) {
         let (rest, k, terms) = (layout.in_rest, layout.eliminated, layout.terms.len());
@@ -143,19 +173,8 @@ impl Factored {
             let size = block.size;
             let lower = &self.blocks[start..start + size * size];
             start += size * size;
-            // Y = L^-T X = B^-1 A.
             let mut y = self.cross[block.first * rest..(block.first + size) * rest].to_vec();
-            for i in (0..size).rev() {
-                let (here, after) = y.split_at_mut((i + 1) * rest);
-                let row = &mut here[i * rest..];
-                for j in i + 1..size {
-                    let by = lower[j * size + i];
-                    let other = &after[(j - i - 1) * rest..][..rest];
-                    row.iter_mut().zip(other).for_each(|(a, x)| *a -= by * x);
-                }
-                let by = 1.0 / lower[i * size + i];
-                row.iter_mut().for_each(|a| *a *= by);
-            }
+            to_inverse(lower, size, &mut y);
             // Minus the inverse between block and rest, and the inverse within the block.
             let mut cross = vec![0.0; size * rest];
             for i in 0..size {
@@ -196,6 +215,22 @@ impl Factored {
                 each(place, &between);
             }
         }
+    }
+}
+
+/// Y = L^-T X = B^-1 A of a block, in place of X.
+fn to_inverse(lower: &[f64], size: usize, x: &mut [f64]) {
+    let rest = if size == 0 { 0 } else { x.len() / size };
+    for i in (0..size).rev() {
+        let (here, after) = x.split_at_mut((i + 1) * rest);
+        let row = &mut here[i * rest..];
+        for j in i + 1..size {
+            let by = lower[j * size + i];
+            let other = &after[(j - i - 1) * rest..][..rest];
+            row.iter_mut().zip(other).for_each(|(a, x)| *a -= by * x);
+        }
+        let by = 1.0 / lower[i * size + i];
+        row.iter_mut().for_each(|a| *a *= by);
     }
 }
 
@@ -318,6 +353,9 @@ mod tests {
             }
         });
         assert_eq!(seen, rows);
+        for (place, own) in system.inverse_diagonal(&layout).into_iter().enumerate() {
+            assert!((own - whole[(place, place)]).abs() < 1e-11);
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod cumulative;
 mod design;
 mod effects;
 mod laplace;
+pub(crate) mod linear;
 mod procedure;
 mod result;
 mod search;
@@ -107,7 +108,7 @@ pub fn mixed_model(
         columns.data(&steps, &Fixed::of(&columns.factors, terms, rows.len()), groupings)
     };
     let whole = data(&terms, &kept);
-    if !determined(&whole) {
+    if !determined(&whole.fixed, whole.columns) {
         return Ok(Outcome::undefined(NoEstimate::Singular));
     }
     let found = match converged(&whole) {
@@ -260,12 +261,12 @@ fn formula(factors: &[Factor], terms: &[FixedTerm]) -> String {
     }
 }
 
-/// Whether the columns and a constant are linearly independent.
-fn determined(data: &Data) -> bool {
-    let size = data.columns + 1;
+/// Whether the columns, a row after the other, and a constant are linearly independent.
+fn determined(fixed: &[f64], columns: usize) -> bool {
+    let size = columns + 1;
     let mut products = vec![0.0; size * size];
-    let rows = data.category.len();
-    for row in data.fixed.chunks_exact(data.columns) {
+    let rows = fixed.len() / columns;
+    for row in fixed.chunks_exact(columns) {
         let value = |i: usize| if i == 0 { 1.0 } else { row[i - 1] };
         for i in 0..size {
             for j in 0..=i {

@@ -142,7 +142,7 @@ fn run(table: &Table, arguments: &Arguments) -> Result<Answer, Refusal> {
 }
 
 /// A column, or the combination of several joined by colons.
-fn grouping(table: &Table, name: &str) -> Result<Factor, Refusal> {
+pub(super) fn grouping(table: &Table, name: &str) -> Result<Factor, Refusal> {
     if table.has(name) {
         return table.factor(name);
     }

@@ -42,17 +42,28 @@ impl Fit {
     }
 }
 
-/// The maximum of the likelihood.
-pub(super) fn fit(data: &Data) -> Fit {
-    let mut objective = data.objective();
-    let first_sd = data.parameters() - data.layout.terms.len();
-    let mut start = data.start();
+/// Where minus a log likelihood is least.
+pub(super) struct Least {
+    pub at: Vec<f64>,
+    pub value: f64,
+    /// Largest element of the gradient.
+    pub gradient: f64,
+}
+
+/// The least of minus a log likelihood whose parameters are standard deviations (of either sign) from `first_sd` on.
+/// One that is 0 is exactly 0.
+pub(super) fn least(
+    start: Vec<f64>,
+    first_sd: usize,
+    mut objective: impl FnMut(&[f64], &mut [f64]) -> f64,
+) -> Least {
+    let mut start = start;
     let mut slopes = vec![0.0; start.len()];
     let mut rounds = 0;
     loop {
         rounds += 1;
         let stop = Stop { gradient: AIM, steps: STEPS };
-        let mut found = minimise(start, &stop, |at, gradient| objective.value(at, gradient));
+        let mut found = minimise(start, &stop, &mut objective);
         let mut escaped = false;
         for place in first_sd..found.at.len() {
             if found.at[place].abs() > SMALL_SD {
@@ -61,7 +72,7 @@ pub(super) fn fit(data: &Data) -> Fit {
             let mut probe = |sd: f64| {
                 let mut at = found.at.clone();
                 at[place] = sd;
-                objective.value(&at, &mut slopes)
+                objective(&at, &mut slopes)
             };
             // At 0 the slope is 0 by symmetry, also where 0 is the worst of all.
             if rounds < ROUNDS && probe(3.0 * SMALL_SD) < found.value - SAME {
@@ -71,7 +82,7 @@ pub(super) fn fit(data: &Data) -> Fit {
                 found.at[place] = 0.0;
             }
         }
-        let value = objective.value(&found.at, &mut slopes);
+        let value = objective(&found.at, &mut slopes);
         let gradient = slopes.iter().fold(0.0_f64, |most, slope| {
             if slope.is_nan() { f64::INFINITY } else { most.max(slope.abs()) }
         });
@@ -80,20 +91,28 @@ pub(super) fn fit(data: &Data) -> Fit {
             start = found.at;
             continue;
         }
-        let own = data.split(&found.at);
-        let mut sds = vec![0.0; data.layout.terms.len()];
-        for (term, sd) in data.layout.terms.iter().zip(own.sds) {
-            sds[*term] = sd.abs();
-        }
-        return Fit {
-            log_likelihood: -value,
-            gradient,
-            thresholds: own.thresholds.values().to_vec(),
-            coefficients: own.coefficients.to_vec(),
-            sds,
-            modes: objective.modes,
-            at: found.at,
-        };
+        return Least { at: found.at, value, gradient };
+    }
+}
+
+/// The maximum of the likelihood.
+pub(super) fn fit(data: &Data) -> Fit {
+    let mut objective = data.objective();
+    let first_sd = data.parameters() - data.layout.terms.len();
+    let found = least(data.start(), first_sd, |at, gradient| objective.value(at, gradient));
+    let own = data.split(&found.at);
+    let mut sds = vec![0.0; data.layout.terms.len()];
+    for (term, sd) in data.layout.terms.iter().zip(own.sds) {
+        sds[*term] = sd.abs();
+    }
+    Fit {
+        log_likelihood: -found.value,
+        gradient: found.gradient,
+        thresholds: own.thresholds.values().to_vec(),
+        coefficients: own.coefficients.to_vec(),
+        sds,
+        modes: objective.modes,
+        at: found.at,
     }
 }
 

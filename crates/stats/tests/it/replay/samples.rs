@@ -68,6 +68,12 @@ pub fn special(sample: Sample, procedure: &str, random: &mut Random) -> Option<R
             "d$y, d$m, d$p, d$s",
             "d['y'], d['m'], d['p'], d['s']",
         ),
+        Sample::LinearMixedModel => one(
+            rated_clips(random),
+            vec![("response", "y"), ("factors", "m"), ("groups", "p,p:m,s,s:m")],
+            "d$y, d$m, d$p, d$s",
+            "d['y'], d['m'], d['p'], d['s']",
+        ),
         Sample::Equivalence => one(
             csv(["y"], (0..24).map(|_| cells([&((random.normal() * 10.0).round() / 10.0)]))),
             vec![("difference", "y"), ("bounds", "-0.75,0.9")],

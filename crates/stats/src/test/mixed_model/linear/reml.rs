@@ -1,0 +1,192 @@
+//! The restricted likelihood of y = Xβ + Zu + ε, its gradient, and its maximum.
+//!
+//! Standard deviations of random effects are in units of the residual one: V = I + Z Λ Λ' Z', u = Λ b. With
+//! M = I + Λ Z'Z Λ, V^-1 = I - Z Λ M^-1 Λ Z' and Λ Z' V^-1 = M^-1 Λ Z', so that all that is needed are solutions of the
+//! system of random effects (Bates, Mächler, Bolker and Walker 2015).
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::numerics::dot;
+use crate::test::mixed_model::design::Layout;
+use crate::test::mixed_model::effects::Factored;
+use crate::test::mixed_model::search::{Least, least};
+
+/// Standard deviations below this are 0: their gradient is a difference of equal numbers.
+const ZERO: f64 = 1e-7;
+/// Where the search begins, in residual standard deviations.
+const START: f64 = 0.5;
+
+/// Responses and their columns, in the order in which the effects are solved.
+pub(super) struct Data {
+    pub layout: Layout,
+    /// Fixed effects, the constant first: a column after the other, and the responses after the last.
+    columns: Vec<Vec<f64>>,
+    /// Z' of each.
+    sums: Vec<Vec<f64>>,
+    /// Inner products of all columns.
+    products: DMatrix<f64>,
+    weights: Vec<f64>,
+    /// The term (in the order of the layout) of each effect.
+    terms: Vec<usize>,
+}
+
+/// What the likelihood is made of at some standard deviations.
+pub(super) struct Solved {
+    /// Cholesky factor of X' V^-1 X.
+    pub information: Cholesky<f64, Dyn>,
+    pub coefficients: DVector<f64>,
+    /// (y - Xβ)' V^-1 (y - Xβ).
+    pub squares: f64,
+    /// ln det V + ln det X' V^-1 X.
+    ln_dets: f64,
+    /// Λ Z' V^-1 of each column of X, and of y - Xβ.
+    pub of_columns: Vec<Vec<f64>>,
+    pub of_residuals: Vec<f64>,
+    system: Factored,
+}
+
+impl Data {
+    /// Of rows x columns of fixed effects (without the constant) and responses, in the order of the data.
+    pub(super) fn new(layout: Layout, fixed: &[f64], columns: usize, response: &[f64]) -> Self {
+        let of = |value: &dyn Fn(usize) -> f64| layout.rows.iter().map(|row| value(*row)).collect();
+        let mut all: Vec<Vec<f64>> = vec![vec![1.0; response.len()]];
+        all.extend((0..columns).map(|column| of(&|row| fixed[row * columns + column])));
+        all.push(of(&|row| response[row]));
+        let sums = all.iter().map(|column| {
+            let mut sums = vec![0.0; layout.size()];
+            for (place, value) in column.iter().enumerate() {
+                for effect in layout.effects(place) {
+                    sums[*effect as usize] += value;
+                }
+            }
+            sums
+        });
+        let sums = sums.collect();
+        let products = DMatrix::from_fn(all.len(), all.len(), |i, j| dot(&all[i], &all[j]));
+        let weights = vec![1.0; response.len()];
+        let mut terms = vec![0; layout.size()];
+        for place in 0..response.len() {
+            for (term, effect) in layout.effects(place).iter().enumerate() {
+                terms[*effect as usize] = term;
+            }
+        }
+        Self { layout, columns: all, sums, products, weights, terms }
+    }
+
+    /// Columns of X.
+    pub(super) fn fixed(&self) -> usize {
+        self.columns.len() - 1
+    }
+
+    /// Responses less columns.
+    pub(super) fn residual_df(&self) -> usize {
+        self.weights.len() - self.fixed()
+    }
+
+    /// The parts of the likelihood; none where they cannot be computed.
+    pub(super) fn solved(&self, sds: &[f64]) -> Option<Solved> {
+        let mut system = Factored::new(&self.layout);
+        if !system.factor(&self.layout, sds, &self.weights) {
+            return None;
+        }
+        let scale: Vec<f64> = self.terms.iter().map(|term| sds[*term]).collect();
+        let scaled: Vec<Vec<f64>> = (self.sums.iter())
+            .map(|sums| sums.iter().zip(&scale).map(|(sum, sd)| sum * sd).collect())
+            .collect();
+        let mut solved = scaled.clone();
+        solved.iter_mut().for_each(|own| system.solve(&self.layout, own));
+        let size = self.columns.len();
+        let whole = DMatrix::from_fn(size, size, |i, j| {
+            self.products[(i, j)] - dot(&scaled[i], &solved[j])
+        });
+        let fixed = self.fixed();
+        let information = Cholesky::new(whole.view((0, 0), (fixed, fixed)).into_owned())?;
+        let with_response = whole.view((0, fixed), (fixed, 1)).column(0).into_owned();
+        let coefficients = information.solve(&with_response);
+        let squares = whole[(fixed, fixed)] - coefficients.dot(&with_response);
+        let mut of_residuals = solved.pop()?;
+        for (own, coefficient) in solved.iter().zip(&coefficients) {
+            of_residuals.iter_mut().zip(own).for_each(|(r, s)| *r -= coefficient * s);
+        }
+        let ln_dets = system.ln_det + information.ln_determinant();
+        let of_columns = solved;
+        let found = Solved {
+            information,
+            coefficients,
+            squares,
+            ln_dets,
+            of_columns,
+            of_residuals,
+            system,
+        };
+        (found.squares > 0.0 && found.ln_dets.is_finite()).then_some(found)
+    }
+
+    /// For each term, the trace of P Z Z' σ², the squares of Λ Z' P y, and the trace's part of each column: what slopes
+    /// by its standard deviation are made of. P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1.
+    fn traces(&self, solved: &Solved) -> Vec<[f64; 2]> {
+        let terms = &self.terms;
+        let mut found = vec![[0.0; 2]; self.layout.terms.len()];
+        let diagonal = solved.system.inverse_diagonal(&self.layout);
+        for (effect, term) in terms.iter().enumerate() {
+            found[*term][0] += 1.0 - diagonal[effect];
+            found[*term][1] += solved.of_residuals[effect].powi(2);
+        }
+        let covariance = solved.information.inverse();
+        let own = &solved.of_columns;
+        for i in 0..own.len() {
+            for j in 0..own.len() {
+                let by = covariance[(i, j)];
+                for (effect, term) in terms.iter().enumerate() {
+                    found[*term][0] -= by * own[i][effect] * own[j][effect];
+                }
+            }
+        }
+        found
+    }
+
+    /// Half the restricted deviance at its best residual standard deviation, without constants, and its slopes.
+    fn value(&self, sds: &[f64], gradient: &mut [f64]) -> f64 {
+        let Some(solved) = self.solved(sds) else {
+            gradient.fill(f64::NAN);
+            return f64::INFINITY;
+        };
+        let df = self.residual_df() as f64;
+        let slopes = self.slopes(sds, &solved, solved.squares / df);
+        gradient.copy_from_slice(&slopes);
+        0.5 * (solved.ln_dets + df * libm::log(solved.squares))
+    }
+
+    /// Slopes of half the restricted deviance by the standard deviations where the residual variance is `variance`.
+    pub(super) fn slopes(&self, sds: &[f64], solved: &Solved, variance: f64) -> Vec<f64> {
+        let traces = self.traces(solved);
+        let slope = |([trace, squares], sd): (&[f64; 2], &f64)| match sd.abs() < ZERO {
+            true => 0.0,
+            false => (trace - squares / variance) / sd,
+        };
+        traces.iter().zip(sds).map(slope).collect()
+    }
+
+    /// Sums of squares by term of Λ Z' V^-1 X w for weights w of the coefficients.
+    pub(super) fn squares_by_term(&self, solved: &Solved, weights: &DVector<f64>) -> Vec<f64> {
+        let mut found = vec![0.0; self.layout.terms.len()];
+        for (effect, term) in self.terms.iter().enumerate() {
+            let own = solved.of_columns.iter().zip(weights);
+            let own: f64 = own.map(|(column, weight)| weight * column[effect]).sum();
+            found[*term] += own * own;
+        }
+        found
+    }
+
+    /// Where the restricted likelihood is highest.
+    pub(super) fn fit(&self) -> Least {
+        let start = vec![START; self.layout.terms.len()];
+        least(start, 0, |sds, gradient| self.value(sds, gradient))
+    }
+
+    /// The restricted deviance, -2 ln L, at a value of the search.
+    pub(super) fn deviance(&self, value: f64) -> f64 {
+        let df = self.residual_df() as f64;
+        2.0 * value + df * (1.0 + libm::log(2.0 * std::f64::consts::PI / df))
+    }
+}
