@@ -1,12 +1,13 @@
 //! What a hypothesis comes to: whether something was shown after the correction over all hypotheses, and how large it
 //! is.
 
-use mimique_stats::{EquivalenceVerdict, Outcome};
+use mimique_stats::EquivalenceVerdict;
 use mimique_study::TestName;
 
 use crate::choices::preference::Preference;
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::is_two_way;
+use crate::hypothesis::other_clips::{DecidingTest, OtherClips};
 use crate::hypothesis::reading::LEVEL;
 use crate::trials::measure::MeasureKind;
 
@@ -46,8 +47,6 @@ pub(crate) enum EffectUnit {
     Shares,
     /// Seconds.
     Seconds,
-    /// Odds of a higher rating.
-    Odds,
     /// Shares of choices.
     Chosen,
     /// Just noticeable differences from the mean of all levels.
@@ -58,7 +57,6 @@ impl EffectUnit {
     /// How far a value lies from no difference, on the scale on which intervals are drawn.
     pub(crate) fn drawn(self, value: f64) -> f64 {
         match self {
-            Self::Odds => value.ln(),
             Self::Chosen => value - 0.5,
             Self::Points | Self::Shares | Self::Seconds | Self::Worth => value,
         }
@@ -68,7 +66,7 @@ impl EffectUnit {
 /// What an effect is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EffectOf<'r> {
-    /// The first less the second; of odds and choices, the first against the second.
+    /// The first less the second; of choices, the first against the second.
     Difference([&'r str; 2]),
     /// One level against the mean of all.
     Level(&'r str),
@@ -158,21 +156,17 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
     if let Some(preferred) = &result.preference {
         return of_choices(preferred);
     }
-    let model = result.other_clips.as_ref().filter(|found| found.decides);
-    if let Some(Some(Outcome::Ok(model))) = model.map(|found| &found.mixed_model) {
-        // The model's odds are those at the second level.
-        let pairs = model.pairs.iter().filter(|_| model.pairs.len() <= MOST_PAIRS);
-        return pairs
-            .map(|pair| {
-                let [low, high] = pair.interval_95;
-                Effect {
-                    of: EffectOf::Difference([&pair.a, &pair.b]),
-                    estimate: 1.0 / pair.odds_ratio,
-                    interval: [1.0 / high, 1.0 / low],
-                    covers: 95,
-                    unit: EffectUnit::Odds,
-                    smallest: None,
-                }
+    let decides = result.other_clips.as_ref().filter(|found| found.decides);
+    if let Some(DecidingTest::LinearModel(model)) = decides.and_then(OtherClips::deciding_test) {
+        let few = model.pairs.iter().filter(|_| model.pairs.len() <= MOST_PAIRS);
+        return few
+            .map(|pair| Effect {
+                of: EffectOf::Difference([&pair.a, &pair.b]),
+                estimate: pair.difference,
+                interval: pair.interval_95,
+                covers: 95,
+                unit,
+                smallest: None,
             })
             .collect();
     }

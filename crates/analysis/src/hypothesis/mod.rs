@@ -50,7 +50,7 @@ pub(crate) struct HypothesisResult {
     pub as_in_the_thesis: TrialLevel,
     /// The same of the clips as they are, each person counting once.
     pub recommended: PersonLevel,
-    /// Of other clips too, where ratings are compared within people.
+    /// Of other clips too, where levels are compared and trials have segments.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_clips: Option<OtherClips>,
     /// Whether the difference is smaller than the smallest that matters, where that is what is tested.
@@ -67,8 +67,8 @@ pub(crate) struct HypothesisResult {
     /// The people of each condition compared, where the assigned condition is a factor.
     #[serde(skip_serializing_if = "Labelled::is_empty")]
     pub people_by_condition: Labelled<InCondition>,
-    /// p of the test that decides: the recommended one, or the mixed model where the hypothesis generalises to other
-    /// clips.
+    /// p of the test that decides: the recommended one, or the linear mixed model (or min F') where the hypothesis is
+    /// about other clips.
     pub p: Option<f64>,
     /// After Holm's correction over the study's hypotheses.
     pub p_holm_over_hypotheses: Option<f64>,
@@ -138,23 +138,24 @@ pub(crate) fn test_hypothesis(
         reading.push(' ');
         reading += &words;
     }
+    let kind = measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind);
     let other_clips =
-        measure.as_ref().and_then(|measure| of_clips(export, hypothesis, measure, clips));
+        measure.as_ref().and_then(|measure| of_clips(export, study, hypothesis, measure, clips));
     if let Some(found) = &other_clips {
-        let factor = hypothesis.factors.first().map_or("", String::as_str);
+        let tested = if is_two_way(hypothesis.test) { 2 } else { 1 };
+        let factors = &hypothesis.factors[..hypothesis.factors.len().min(tested)];
         reading.push(' ');
-        reading += &reading::other_clips(naming, found, factor);
+        reading += &reading::other_clips(naming, found, kind, factors);
     }
     let decided = match &other_clips {
         Some(found) if found.decides => found.p(),
         // Nothing else stands in for the test that the study file names.
-        None if hypothesis.generalise.is_some() => None,
+        None if hypothesis.is_about_other_clips() => None,
         _ => deciding_p(&people),
     };
     let people_by_condition = measure.as_ref().map_or_else(Labelled::default, |measure| {
         conditions::people(export, study, hypothesis, measure)
     });
-    let kind = measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind);
     reading += &conditions::words(naming, &people_by_condition, kind);
     HypothesisResult {
         id: hypothesis.id.clone(),
@@ -194,20 +195,17 @@ fn equivalent(
 /// Whether what is found holds for other clips too, where the hypothesis is of a kind that this can be asked of.
 fn of_clips(
     export: &Export,
+    study: &Study,
     hypothesis: &Hypothesis,
     measure: &Measure,
     tests: OtherClipsTests,
 ) -> Option<OtherClips> {
-    let name = hypothesis.factors.first().filter(|name| export.factors.contains(name))?;
-    if !other_clips::is_asked(hypothesis, measure) {
+    if !hypothesis.test.holds_for_other_clips() || of_pair(study, hypothesis).is_some() {
         return None;
     }
-    let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
-    let factor = measure.factor(export, name, &levels);
-    if factor.levels.len() < 2 {
-        return None;
-    }
-    other_clips::tested(export, measure, &factor, hypothesis.generalise.is_some(), tests)
+    let mut factors = factors(export, study, hypothesis, measure).ok()?;
+    factors.truncate(if is_two_way(hypothesis.test) { 2 } else { 1 });
+    other_clips::tested(export, measure, &factors, hypothesis.is_about_other_clips(), tests)
 }
 
 /// Which answers are compared by the first factor that is one of the clips.

@@ -1,13 +1,14 @@
-//! Whether a difference of ratings holds for other people and other clips alike: min F' and a mixed model with effects
-//! of people, of people with each level, of segments and of clips.
+//! Whether what is found holds for other people and other clips alike, people and clips both being drawn at random: a
+//! linear mixed model with effects of people and segments and of both with each level, and beside it, where levels are
+//! compared within people, min F' and, of ratings, the cumulative model of their steps.
 
 use std::sync::Arc;
 
 use mimique_stats::{
-    Factor, Labelled, MinFPrime, MixedModel, MixedModelOptions, MixedShares, Outcome, TestResult,
-    min_f_prime, mixed_model,
+    Factor, Labelled, LinearMean, LinearMixedModel, LinearMixedModelOptions, MinFPrime, MixedModel,
+    MixedModelOptions, MixedShares, Outcome, TestResult, linear_mixed_model, min_f_prime,
+    mixed_model,
 };
-use mimique_study::Hypothesis;
 use serde::Serialize;
 
 use crate::hypothesis::call::{Call, Design};
@@ -19,27 +20,69 @@ use crate::trials::measure::{Measure, MeasureKind};
 /// Which tests of other clips are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum OtherClipsTests {
-    /// Min F' alone, which is quick; the mixed model too where it decides.
-    MinF,
-    /// Both.
-    Both,
+    /// Those that decide, and min F'.
+    Deciding,
+    /// Those, and the cumulative model of ratings.
+    All,
 }
 
 /// A hypothesis about other clips too.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct OtherClips {
-    /// Whether the mixed model decides the hypothesis.
+    /// Whether these tests decide the hypothesis.
     pub decides: bool,
-    /// Levels that are compared.
+    /// Levels of the first factor that are compared.
     pub levels: Vec<String>,
-    /// Clark's min F'.
-    pub min_f: TestOutcome,
-    /// The mixed model; where it did not converge, that, and no p. None where it was not asked for.
+    /// The linear mixed model; where it cannot be estimated, that, and no p. None where it was not asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub linear_model: Option<Outcome<LinearClipModel, Why>>,
+    /// Clark's min F', where levels are compared within people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub min_f: Option<TestOutcome>,
+    /// The cumulative mixed model of ratings; where it did not converge, that, and no p. None where it was not asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mixed_model: Option<Outcome<ClipModel, Why>>,
 }
 
-/// What is told of the mixed model.
+/// What is told of the linear mixed model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct LinearClipModel {
+    pub formula: String,
+    pub observations: usize,
+    /// Wald's F of the factor, or of the interaction of both.
+    pub f: f64,
+    pub df: usize,
+    /// Satterthwaite's degrees of freedom.
+    pub df_denominator: f64,
+    pub p: f64,
+    pub ln_p: f64,
+    /// Of each level of the one factor.
+    pub means: Labelled<LinearMean>,
+    /// Every two levels of the one factor.
+    pub pairs: Vec<LinearClipPair>,
+    /// Standard deviation of each term, in the unit of the answers.
+    pub sd: Labelled<f64>,
+    pub residual_sd: f64,
+    /// Terms whose standard deviation is 0.
+    pub at_zero: Vec<String>,
+    /// Terms that part the answers as another one does.
+    pub left_out: Vec<String>,
+}
+
+/// Two levels in the linear mixed model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct LinearClipPair {
+    pub a: String,
+    pub b: String,
+    /// a less b.
+    pub difference: f64,
+    pub interval_95: [f64; 2],
+    pub df: f64,
+    /// After Holm's correction over the pairs.
+    pub p_corrected: f64,
+}
+
+/// What is told of the cumulative mixed model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ClipModel {
     pub formula: String,
@@ -66,7 +109,7 @@ pub(crate) struct ClipModel {
     pub loglik: f64,
 }
 
-/// Two levels in the mixed model, the second against the first.
+/// Two levels in the cumulative mixed model, the second against the first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ClipPair {
     pub a: String,
@@ -79,43 +122,149 @@ pub(crate) struct ClipPair {
     pub higher: f64,
 }
 
+/// Which test of other clips gives a p.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum DecidingTest<'r> {
+    LinearModel(&'r LinearClipModel),
+    /// Where the model cannot be estimated.
+    MinF(&'r TestLine),
+}
+
 impl OtherClips {
-    /// p of the mixed model.
-    pub(crate) fn p(&self) -> Option<f64> {
-        match &self.mixed_model {
-            Some(Outcome::Ok(model)) => Some(model.p),
+    /// The test that decides: the model, or min F' where the model cannot be estimated.
+    pub(crate) fn deciding_test(&self) -> Option<DecidingTest<'_>> {
+        match (&self.linear_model, &self.min_f) {
+            (Some(Outcome::Ok(model)), _) => Some(DecidingTest::LinearModel(model)),
+            (_, Some(Outcome::Ok(line))) => Some(DecidingTest::MinF(line)),
             _ => None,
         }
     }
+
+    /// Its p.
+    pub(crate) fn p(&self) -> Option<f64> {
+        self.deciding_test().map(|test| match test {
+            DecidingTest::LinearModel(model) => model.p,
+            DecidingTest::MinF(line) => line.row.p_value,
+        })
+    }
 }
 
-/// Whether a hypothesis, the first factor of which is one of the clips, is one that other clips are asked about:
-/// ratings compared within people.
-pub(crate) fn is_asked(hypothesis: &Hypothesis, measure: &Measure) -> bool {
-    measure.kind == MeasureKind::Rating && hypothesis.test.compares_levels()
+/// The trials of a measure as factors: of people, of segments, of clips.
+struct Units {
+    person: Factor,
+    segment: Factor,
+    clip: Factor,
 }
 
-/// Both tests of ratings by the levels of a factor of the clips; none where trials have no segment.
+impl Units {
+    /// None where trials have no segment.
+    fn of(export: &Export, measure: &Measure) -> Option<Self> {
+        let of_trials = |name: &str, of: &dyn Fn(usize) -> Option<Arc<str>>| {
+            let cells: Vec<Option<Arc<str>>> =
+                measure.trial.iter().map(|trial| of(*trial)).collect();
+            Factor::from_cells(name, cells.iter().map(Option::as_deref), |_| None)
+        };
+        let segment = of_trials("segment", &|trial| export.trials[trial].segment.clone());
+        if segment.levels.is_empty() {
+            return None;
+        }
+        let ids = measure.person.iter().map(|person| Some(export.people[*person].id.as_str()));
+        Some(Self {
+            person: Factor::from_cells("participant", ids, |_| None),
+            segment,
+            clip: of_trials("clip", &|trial| Some(Arc::clone(&export.trials[trial].stimulus))),
+        })
+    }
+}
+
+/// The tests of a measure by the levels of one factor or by two; `within` says of each factor whether it is one of the
+/// clips. None where trials have no segment.
 pub(crate) fn tested(
     export: &Export,
     measure: &Measure,
-    factor: &Factor,
+    factors: &[(Factor, bool)],
     decides: bool,
     tests: OtherClipsTests,
 ) -> Option<OtherClips> {
-    let of_trials = |name: &str, of: &dyn Fn(usize) -> Option<Arc<str>>| {
-        let cells: Vec<Option<Arc<str>>> = measure.trial.iter().map(|trial| of(*trial)).collect();
-        Factor::from_cells(name, cells.iter().map(Option::as_deref), |_| None)
+    let units = Units::of(export, measure)?;
+    let (first, _) = factors.first()?;
+    let asked = decides || tests == OtherClipsTests::All;
+    let linear_model = asked.then(|| linear(measure, factors, &units));
+    let (min_f, mixed_model) = match factors {
+        [(factor, true)] => {
+            let min_f = min_f(export, measure, factor, &units);
+            let cumulative = measure.kind == MeasureKind::Rating && tests == OtherClipsTests::All;
+            (Some(min_f), cumulative.then(|| cumulative_model(measure, factor, &units)))
+        }
+        _ => (None, None),
     };
-    let segment = of_trials("segment", &|trial| export.trials[trial].segment.clone());
-    if segment.levels.is_empty() {
-        return None;
+    Some(OtherClips { decides, levels: first.levels.clone(), linear_model, min_f, mixed_model })
+}
+
+/// The linear model of all answers, with effects of people and segments, of both with each level, and of people with
+/// segments. It contains what differs between segments, so that they need not be matched.
+fn linear(
+    measure: &Measure,
+    factors: &[(Factor, bool)],
+    Units { person, segment, .. }: &Units,
+) -> Outcome<LinearClipModel, Why> {
+    if measure.has_one_row_per_person() {
+        return Outcome::undefined(Why::OneRatingPerPerson);
     }
-    let clip = of_trials("clip", &|trial| Some(Arc::clone(&export.trials[trial].stimulus)));
-    let ids = measure.person.iter().map(|person| Some(export.people[*person].id.as_str()));
-    let person = Factor::from_cells("participant", ids, |_| None);
-    let values = measure.numbers();
-    // Averages need the same segments at every level; the model contains the segments.
+    let mut groupings = Vec::new();
+    for unit in [person, segment] {
+        groupings.push(unit.clone());
+        groupings.extend(factors.iter().map(|(factor, _)| unit.crossed(factor)));
+        if let [(a, _), (b, _)] = factors {
+            groupings.push(unit.crossed(a).crossed(b));
+        }
+    }
+    groupings.push(person.crossed(segment));
+    let groupings: Vec<&Factor> = groupings.iter().collect();
+    let fixed: Vec<&Factor> = factors.iter().map(|(factor, _)| factor).collect();
+    let options = LinearMixedModelOptions { interactions: factors.len() > 1 };
+    match linear_mixed_model(&measure.numbers(), &fixed, &groupings, options) {
+        Err(refusal) => Outcome::undefined(refusal),
+        Ok(outcome) => outcome.map(linear_told).map_reason(Why::from),
+    }
+}
+
+fn linear_told(found: LinearMixedModel) -> LinearClipModel {
+    let pair = |pair: mimique_stats::LinearPair| {
+        let [low, high] = pair.interval_95;
+        LinearClipPair {
+            a: pair.a,
+            b: pair.b,
+            difference: -pair.difference,
+            interval_95: [-high, -low],
+            df: pair.df,
+            p_corrected: pair.p_holm,
+        }
+    };
+    LinearClipModel {
+        formula: found.formula,
+        observations: found.observations,
+        f: found.effect.f,
+        df: found.effect.df,
+        df_denominator: found.effect.df_denominator,
+        p: found.effect.p,
+        ln_p: found.effect.ln_p,
+        means: found.means,
+        pairs: found.pairs.into_iter().map(pair).collect(),
+        sd: found.sd,
+        residual_sd: found.residual_sd,
+        at_zero: found.at_zero,
+        left_out: found.left_out,
+    }
+}
+
+/// Averages need the same segments at every level; models contain the segments.
+fn min_f(
+    export: &Export,
+    measure: &Measure,
+    factor: &Factor,
+    Units { person, segment, .. }: &Units,
+) -> TestOutcome {
     let matching = measure.matching(export, factor);
     let call = Call::new(Design::PeopleAndSegments, MinFPrime::NAMES.function)
         .list(&matching.by)
@@ -125,24 +274,25 @@ pub(crate) fn tested(
     let rows = matching.rows();
     let (matched, level) = measure.at(factor, &rows);
     let at = |factor: &Factor| measure.at(factor, &rows).1;
-    let factors = [&level, &at(&person), &at(&segment)];
-    let min_f = TestLine::min_f(min_f_prime(&matched.numbers(), factors), call);
-    let levels = factor.levels.clone();
-    if !decides && tests == OtherClipsTests::MinF {
-        return Some(OtherClips { decides, levels, min_f, mixed_model: None });
+    let factors = [&level, &at(person), &at(segment)];
+    TestLine::min_f(min_f_prime(&matched.numbers(), factors), call)
+}
+
+fn cumulative_model(
+    measure: &Measure,
+    factor: &Factor,
+    Units { person, segment, clip }: &Units,
+) -> Outcome<ClipModel, Why> {
+    if measure.has_one_row_per_person() {
+        return Outcome::undefined(Why::OneRatingPerPerson);
     }
     let crossed = person.crossed(factor);
-    let groupings = [&person, &crossed, &segment, &clip];
+    let groupings = [person, &crossed, segment, clip];
     let options = MixedModelOptions { ratio_of_last: true, ..MixedModelOptions::default() };
-    if measure.has_one_row_per_person() {
-        let mixed_model = Some(Outcome::undefined(Why::OneRatingPerPerson));
-        return Some(OtherClips { decides, levels, min_f, mixed_model });
-    }
-    let mixed_model = match mixed_model(&values, &[factor], &groupings, options) {
+    match mixed_model(&measure.numbers(), &[factor], &groupings, options) {
         Err(refusal) => Outcome::undefined(refusal),
         Ok(outcome) => outcome.map(told).map_reason(Why::from),
-    };
-    Some(OtherClips { decides, levels, min_f, mixed_model: Some(mixed_model) })
+    }
 }
 
 fn told(found: MixedModel) -> ClipModel {

@@ -51,7 +51,7 @@ pub struct PowerOptions {
     pub alpha: f64,
     /// Whether false positives are counted too, in as many runs again.
     pub false_positives: bool,
-    /// Whether the mixed model of other clips too is fitted in each run, which takes its time.
+    /// Whether the mixed models of other clips too are fitted in each run also where they do not decide.
     pub mixed: bool,
 }
 
@@ -114,7 +114,7 @@ pub struct Columns {
     /// Min F', of other clips too, where ratings are compared within people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_f: Option<Rate>,
-    /// The mixed model, of other clips too, where it was asked for.
+    /// The linear mixed model, of other clips too, where it decides or was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mixed: Option<Rate>,
 }
@@ -210,8 +210,11 @@ pub fn power(
             let all = |model: &Model<'_>, purpose: &str| -> Vec<Run> {
                 let run = |run: usize| {
                     let seed = run_seed(options.seed, purpose, run);
-                    let tests =
-                        if options.mixed { OtherClipsTests::Both } else { OtherClipsTests::MinF };
+                    let tests = if options.mixed {
+                        OtherClipsTests::All
+                    } else {
+                        OtherClipsTests::Deciding
+                    };
                     let result = one_run(study, &design, model, seed, participants, tests);
                     progress();
                     result
@@ -350,8 +353,11 @@ fn one_run(
                 thesis,
                 recommended: result.p,
                 holm: None,
-                min_f: clips.map(|found| found.min_f.p()),
-                mixed: clips.and_then(|found| found.mixed_model.as_ref().map(|_| found.p())),
+                min_f: clips.and_then(|found| found.min_f.as_ref().map(TestOutcome::p)),
+                mixed: clips.and_then(|found| match found.linear_model.as_ref()? {
+                    Outcome::Ok(model) => Some(Some(model.p)),
+                    Outcome::Undefined { .. } => Some(None),
+                }),
             }
         })
         .collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use mimique_locale::Language;
 use mimique_stats::{
-    ChiSquare, EquivalenceOfGroups, Friedman, KruskalWallis, MannWhitney, MixedModel,
+    ChiSquare, EquivalenceOfGroups, Friedman, KruskalWallis, LinearMixedModel, MannWhitney,
     ScheirerRayHare, Sign, Spearman, TestNames, TestResult, WORTHS_RATIO, Wilcoxon,
 };
 use mimique_study::{Hypothesis, KindOfQuestion as _, Measure, Study, TestName};
@@ -128,7 +128,7 @@ fn model(
     }
     equivalence::smallest_effect(text, language, hypothesis);
     let decides = language.pick("decides:", "décide :");
-    if hypothesis.generalise.is_some() {
+    if hypothesis.is_about_other_clips() {
         text.line(&format!("  - {decides} {}.", test_of_other_clips(language)));
         let beside =
             language.pick("beside it, of these clips alone:", "à côté, pour ces extraits seuls :");
@@ -249,10 +249,10 @@ fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setti
 
 /// The test of a hypothesis about other clips too.
 fn test_of_other_clips(language: Language) -> String {
-    let name = name(language, MixedModel::NAMES);
+    let name = name(language, LinearMixedModel::NAMES);
     language.pick(
-        format!("{name} (logit, Laplace) with independent random effects of people, of people with each level, of segments and of clips, against the same model without the factor, so that it holds for other people and other clips; Clark’s min F' is reported beside it; where the model does not converge there is no p, and the hypothesis counts as not shown"),
-        format!("{name} (logit, Laplace) à effets aléatoires indépendants des personnes, des personnes à chaque niveau, des segments et des extraits, contre le même modèle sans le facteur, de sorte qu’il vaut pour d’autres personnes et d’autres extraits ; le min F' de Clark est rapporté à côté ; si le modèle ne converge pas il n’y a pas de p, et l’hypothèse est tenue pour non montrée"),
+        format!("{name}, fitted by restricted maximum likelihood with independent random effects of people and of segments, of both with each level (and combination of levels), and of people with segments, so that it holds for other people and other clips; a random effect that parts the answers as another one does is left out; pairs by t, corrected by Holm; where the model cannot be estimated, Clark’s min F' decides, and where that is undefined too the hypothesis counts as not shown; beside it, of ratings, a cumulative mixed model"),
+        format!("{name}, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires indépendants des personnes et des segments, de chacun à chaque niveau (et combinaison de niveaux), et des personnes pour chaque segment, de sorte qu’il vaut pour d’autres personnes et d’autres extraits ; un effet aléatoire qui partage les réponses comme un autre est omis ; paires par t, corrigées par Holm ; si le modèle ne peut être estimé, le min F' de Clark décide, et s’il n’est pas défini non plus l’hypothèse est tenue pour non montrée ; à côté, pour des notes, un modèle mixte cumulatif"),
     )
 }
 

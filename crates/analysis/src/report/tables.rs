@@ -210,8 +210,33 @@ pub(crate) fn other_clips(
     );
     let mut table = DataTable::new(id, caption, heading);
     let whole = naming.factor(factor);
+    let name = language.pick("linear mixed model", "modèle linéaire mixte");
+    match &found.linear_model {
+        None => {}
+        Some(Outcome::Ok(model)) => {
+            let test =
+                format!("{name} {}, n = {}", reading::f_of(language, model), model.observations);
+            let p = language.p_cell(model.p, model.ln_p);
+            table.row([whole.clone(), test, p, String::new(), String::new()]);
+            for pair in &model.pairs {
+                let [low, high] = pair.interval_95.map(|end| language.fixed(end, 2));
+                table.row([
+                    naming.pair(factor, &pair.a, &pair.b),
+                    format!("{name}, Holm"),
+                    language.p_cell(pair.p_corrected, pair.p_corrected.ln()),
+                    format!("{} [{low}; {high}]", language.fixed(pair.difference, 2)),
+                    String::new(),
+                ]);
+            }
+        }
+        Some(Outcome::Undefined { reason }) => {
+            let undefined = language.pick("no result: ", "sans résultat : ");
+            let test = format!("{name}, {undefined}{}", reason.words(language));
+            table.row([whole.clone(), test, String::new(), String::new(), String::new()]);
+        }
+    }
     let names = MixedModel::NAMES;
-    let name = language.pick("mixed model", "modèle mixte");
+    let name = language.pick("cumulative mixed model", "modèle mixte cumulatif");
     match &found.mixed_model {
         None => {}
         Some(Outcome::Ok(model)) => {
@@ -244,8 +269,10 @@ pub(crate) fn other_clips(
             table.row([whole.clone(), test, String::new(), String::new(), String::new()]);
         }
     }
-    let [test, p, effect] = cells(language, &found.min_f);
-    table.row([whole, test, p, effect, String::new()]);
+    if let Some(min_f) = &found.min_f {
+        let [test, p, effect] = cells(language, min_f);
+        table.row([whole, test, p, effect, String::new()]);
+    }
     table
 }
 

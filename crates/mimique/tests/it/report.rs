@@ -88,8 +88,7 @@ fn points_lead_to_the_preview_that_is_named() {
 
 /// The demonstration with another rule for late frames, as a file, and answers of simulated people to it.
 fn other_version(folder: &Path) -> [String; 2] {
-    let mut file: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(demo()).unwrap()).unwrap();
+    let mut file = mimique_study::parse(&std::fs::read_to_string(demo()).unwrap()).unwrap();
     file["exclusions"]["lateFrameShare"] = serde_json::json!(0.05);
     let versions = folder.join("versions");
     std::fs::create_dir(&versions).unwrap();
@@ -131,7 +130,7 @@ fn versions_that_were_served_are_read_from_the_folder_that_is_named() {
 fn answers_to_a_published_file_that_is_served_again_are_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let read = std::fs::read_to_string(demo()).unwrap();
-    let demonstration: serde_json::Value = serde_json::from_str(&read).unwrap();
+    let demonstration = mimique_study::parse(&read).unwrap();
     let mut served = demonstration.clone();
     served["title"] = serde_json::json!("As it was served first");
     let published = mimique_study::published(&served, demonstration);

@@ -61,6 +61,11 @@ pub enum NoEstimate {
     },
     /// The share of right answers does not rise over the levels.
     NoRise,
+    /// Each level of what is tested has one unit of a grouping, such as one segment.
+    OneUnitPerLevel {
+        /// The grouping.
+        grouping: String,
+    },
 }
 
 impl NoEstimate {
@@ -117,6 +122,9 @@ impl NoEstimate {
                 "right answers do not rise over the levels: the threshold has no finite estimate"
                     .to_owned()
             }
+            Self::OneUnitPerLevel { grouping } => format!(
+                "each level has only one unit of \"{grouping}\", so that nothing tells the levels from what is drawn at random"
+            ),
         }
     }
 
@@ -175,6 +183,9 @@ impl NoEstimate {
                 "les réponses justes n’augmentent pas avec les niveaux : le seuil n’a pas d’estimation finie"
                     .to_owned()
             }
+            Self::OneUnitPerLevel { grouping } => format!(
+                "chaque niveau n’a qu’une unité de « {grouping} », si bien que rien ne distingue les niveaux de ce qui est tiré au hasard"
+            ),
         }
     }
 }

@@ -31,25 +31,16 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     }
 }
 
-/// Segments that a mixed model needs: of fewer their spread is not estimated.
+/// Segments that a mixed model needs: of fewer their spread is hardly estimated.
 const SEGMENTS: usize = 5;
 
-/// That a hypothesis about other clips too is of ratings by a factor of the clips, and has segments enough.
+/// That a hypothesis about other clips has a test of them, and segments enough.
 fn generalise(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
-    if hypothesis.generalise.is_none() {
+    if !hypothesis.is_about_other_clips() {
         return;
     }
     let place = below(pointer, "generalise");
-    let of_clips = hypothesis.factors.first();
-    let of_clips = of_clips.is_some_and(|name| subject.study.factor_names().contains(name));
-    let question = responses::question(subject.study, &hypothesis.response);
-    let rated = question
-        .is_none_or(|question| question.kind.is_numeric() && question.kind.truth().is_none());
-    if !hypothesis.test.compares_levels()
-        || !of_clips
-        || !rated
-        || hypothesis.measure != Measure::Answer
-    {
+    if !hypothesis.test.holds_for_other_clips() {
         let id = hypothesis.id.clone();
         issues.error(&place, Problem::NotOfOtherClips { hypothesis: id });
         return;

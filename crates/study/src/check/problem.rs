@@ -607,8 +607,8 @@ RatingOfPair { question: String, factor: String, clip: String, beside: String }:
     "\"{question}\" rates two clips together that differ in \"{factor}\", such as \"{clip}\" beside \"{beside}\": which of them is meant nobody knows",
     "ask it in trials of one clip, or beside one and the same {factor} that is not compared; or ask which is better by a question of type \"comparison\"";
 NotOfOtherClips { hypothesis: String }: "not-a-number",
-    "\"{hypothesis}\" is no comparison of ratings of one person at several levels of the clips, of which alone other clips are asked about",
-    "take \"wilcoxon\" or \"friedman\" of a rating by a factor of the clips, or leave out \"generalise\"";
+    "\"{hypothesis}\" neither compares levels nor tests an interaction, of which alone other clips are asked about",
+    "take a test such as \"wilcoxon\" or \"friedman\", or leave out \"generalise\"";
 TooFewSegments { segments: Counted, needed: usize }: "wrong-length",
     "{segments}, of which a mixed model cannot tell how far others would differ",
     "show at least {needed} segments, or leave out \"generalise\"";

@@ -27,8 +27,8 @@ pub struct Hypothesis {
     /// The levels of the first factor that are compared, in the order of signs; all if not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub levels: Vec<super::FactorValue>,
-    /// What else the hypothesis is about: with `clips` a mixed model with effects of people, of people with each level,
-    /// of segments and of clips decides, not the test of these clips. Of ratings compared within people.
+    /// What else the hypothesis is about: with `clips` a linear mixed model with random effects of people and of segments
+    /// decides, not the test of these clips. Of levels that are compared and of interactions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub generalise: Option<Generalise>,
     /// Of the test `equivalence`: the smallest difference that matters, either way, in points of the scale (of right
@@ -46,6 +46,9 @@ pub struct Hypothesis {
 pub enum Generalise {
     /// Other people, and other clips of other segments.
     Clips,
+    /// Other people who see these clips.
+    #[serde(rename = "these clips")]
+    TheseClips,
 }
 
 /// A test, by its name in `mimique test`.
@@ -76,6 +79,13 @@ pub enum TestName {
     Equivalence,
 }
 
+impl Hypothesis {
+    /// Whether it is about other people and other clips, not about these clips.
+    pub fn is_about_other_clips(&self) -> bool {
+        self.generalise == Some(Generalise::Clips)
+    }
+}
+
 impl TestName {
     /// Whether it is a test of answers that choose between two clips.
     pub fn is_of_choices(self) -> bool {
@@ -85,6 +95,12 @@ impl TestName {
     /// Whether it compares levels, and not two factors, a relation, choices or counts.
     pub fn compares_levels(self) -> bool {
         matches!(self, Self::KruskalWallis | Self::Wilcoxon | Self::MannWhitney | Self::Friedman)
+    }
+
+    /// Whether there is a test of it that is about other clips too: of levels that are compared, and of interactions.
+    pub fn holds_for_other_clips(self) -> bool {
+        let two_way = matches!(self, Self::ScheirerRayHare | Self::AlignedRankTransform);
+        self.compares_levels() || self == Self::ChiSquare || two_way
     }
 
     /// As a study file writes it.

@@ -26,7 +26,7 @@ pub(crate) use decision::{deciding_p, decision, mark, supports};
 pub(crate) use detection::d_prime_by;
 pub(crate) use equivalence::{equivalence, verdict};
 pub(crate) use matching::{unequal_exclusion, unmatched};
-pub(crate) use other_clips::other_clips;
+pub(crate) use other_clips::{f_of, other_clips};
 use pairs::{each_pair, many_pairs, topic};
 pub(crate) use versions::other_version;
 

@@ -1,13 +1,25 @@
 //! What is said of other clips.
 
+use mimique_locale::Language;
 use mimique_stats::Outcome;
 
-use super::{LEVEL, numbers};
-use crate::hypothesis::other_clips::{ClipModel, OtherClips};
+use super::{LEVEL, difference, numbers, unit};
+use crate::hypothesis::other_clips::{
+    ClipModel, ClipPair, DecidingTest, LinearClipModel, OtherClips,
+};
 use crate::naming::Naming;
+use crate::trials::measure::MeasureKind;
 
-/// Whether the difference holds for other clips, by the mixed model, with min F' beside it.
-pub(crate) fn other_clips(naming: &Naming<'_>, found: &OtherClips, factor: &str) -> String {
+/// Most pairs that a reading names.
+const PAIRS: usize = 3;
+
+/// Whether the difference holds for other clips, by the linear mixed model, with the other tests beside it.
+pub(crate) fn other_clips(
+    naming: &Naming<'_>,
+    found: &OtherClips,
+    kind: MeasureKind,
+    factors: &[String],
+) -> String {
     let language = naming.language;
     let mut sentences = vec![language.pick(
         if found.decides {
@@ -22,18 +34,22 @@ pub(crate) fn other_clips(naming: &Naming<'_>, found: &OtherClips, factor: &str)
         },
     )
     .to_owned()];
-    match &found.mixed_model {
-        Some(Outcome::Ok(model)) => sentences.extend(of_model(naming, model, factor)),
+    match &found.linear_model {
+        Some(Outcome::Ok(model)) => sentences.extend(linear(naming, model, kind, factors)),
         None => {}
         Some(Outcome::Undefined { reason }) => {
             let reason = reason.words(language);
             sentences.push(language.pick(
-                format!("the mixed model gives no p ({reason})."),
-                format!("le modèle mixte ne donne pas de p ({reason})."),
+                format!("the linear mixed model gives no p ({reason})."),
+                format!("le modèle linéaire mixte ne donne pas de p ({reason})."),
             ));
+            if let (true, Some(DecidingTest::MinF(_))) = (found.decides, found.deciding_test()) {
+                let words = language.pick("Min F' decides instead.", "Min F' décide à sa place.");
+                sentences.push(words.to_owned());
+            }
         }
     }
-    sentences.push(match &found.min_f {
+    sentences.extend(found.min_f.as_ref().map(|min_f| match min_f {
         Outcome::Ok(line) => format!("{}.", numbers(language, line)),
         Outcome::Undefined { reason } => {
             let reason = reason.words(language);
@@ -42,53 +58,87 @@ pub(crate) fn other_clips(naming: &Naming<'_>, found: &OtherClips, factor: &str)
                 format!("Min F' n’est pas défini ({reason})."),
             )
         }
-    });
+    }));
+    if let Some(Outcome::Ok(model)) = &found.mixed_model {
+        let factor = factors.first().map_or("", String::as_str);
+        sentences.extend(
+            model
+                .pairs
+                .first()
+                .filter(|_| model.pairs.len() == 1)
+                .map(|pair| odds(naming, model, pair, factor)),
+        );
+    }
     sentences.join(" ")
 }
 
-fn of_model(naming: &Naming<'_>, model: &ClipModel, factor: &str) -> Vec<String> {
+fn linear(
+    naming: &Naming<'_>,
+    model: &LinearClipModel,
+    kind: MeasureKind,
+    factors: &[String],
+) -> Vec<String> {
     let language = naming.language;
-    let shown = naming.factor(factor);
-    let numbers = format!(
-        "χ²({}) = {}, {}",
-        model.df,
-        language.number(model.likelihood_ratio),
-        language.p(model.p)
-    );
-    let mut sentences = vec![if model.p < LEVEL {
-        language.pick(
-            format!("by the mixed model the levels of {shown} differ ({numbers})."),
-            format!("selon le modèle mixte les niveaux du facteur {shown} diffèrent ({numbers})."),
-        )
-    } else {
-        language.pick(
-            format!("the mixed model has shown no effect of {shown} ({numbers}); that is no proof that there is none."),
-            format!("le modèle mixte n’a montré aucun effet du facteur {shown} ({numbers}) ; cela ne prouve pas qu’il n’y en a pas."),
-        )
+    let numbers = format!("{}, {}", f_of(language, model), language.p(model.p));
+    let factor = factors.first().map_or("", String::as_str);
+    let mut sentences = vec![match (factors, model.p < LEVEL) {
+        ([a, b, ..], true) => language.pick(
+            format!("by the linear mixed model the effect of {} depends on {} ({numbers}).", naming.factor(a), naming.factor(b)),
+            format!("selon le modèle linéaire mixte, l’effet du facteur {} dépend du facteur {} ({numbers}).", naming.factor(a), naming.factor(b)),
+        ),
+        ([a, b, ..], false) => language.pick(
+            format!("that the effect of {} depends on {} was not shown by the linear mixed model ({numbers}); that is no proof that it does not.", naming.factor(a), naming.factor(b)),
+            format!("que l’effet du facteur {} dépende du facteur {} n’a pas été montré par le modèle linéaire mixte ({numbers}) ; cela ne prouve pas qu’il n’en dépend pas.", naming.factor(a), naming.factor(b)),
+        ),
+        (_, true) => language.pick(
+            format!("by the linear mixed model the levels of {} differ ({numbers}).", naming.factor(factor)),
+            format!("selon le modèle linéaire mixte, les niveaux du facteur {} diffèrent ({numbers}).", naming.factor(factor)),
+        ),
+        (_, false) => language.pick(
+            format!("the linear mixed model has shown no effect of {} ({numbers}); that is no proof that there is none.", naming.factor(factor)),
+            format!("le modèle linéaire mixte n’a montré aucun effet du facteur {} ({numbers}) ; cela ne prouve pas qu’il n’y en a pas.", naming.factor(factor)),
+        ),
     }];
-    // The odds of several pairs stand in the table of tests.
-    if let [pair] = model.pairs.as_slice() {
-        // The level that stands higher is told of the other one.
-        let (low, high, odds, [least, most], share) = if pair.odds_ratio >= 1.0 {
-            (&pair.a, &pair.b, pair.odds_ratio, pair.interval_95, pair.higher)
-        } else {
-            let [least, most] = pair.interval_95;
-            (&pair.b, &pair.a, 1.0 / pair.odds_ratio, [1.0 / most, 1.0 / least], 1.0 - pair.higher)
+    // More pairs stand in the table of tests.
+    for pair in model.pairs.iter().filter(|_| model.pairs.len() <= PAIRS) {
+        let number = |value: f64| difference(language, kind, value);
+        let [low, high] = pair.interval_95.map(number);
+        let names = naming.pair(factor, &pair.a, &pair.b);
+        let (estimate, unit) = (number(pair.difference), unit(language, kind));
+        let p = match model.pairs.len() {
+            1 => String::new(),
+            _ => format!(", {} (Holm)", language.p(pair.p_corrected)),
         };
-        let (low, high) = (naming.level(factor, low), naming.level(factor, high));
-        let [odds, least, most] = [odds, least, most].map(|value| language.fixed(value, 1));
-        let share = language.percent(share);
-        let p = language.p(pair.p_corrected);
         sentences.push(language.pick(
-            format!("{high} against {low}: odds of a higher rating {odds} times ({least} to {most}), {p}; {high} is the higher of two in {share}."),
-            format!("{high} par rapport à {low} : chances d’une note plus haute multipliées par {odds} ({least} à {most}), {p} ; {high} est la plus haute de deux notes dans {share} des cas."),
-        ));
-    }
-    for term in &model.at_zero {
-        sentences.push(language.pick(
-            format!("The standard deviation of {term} is 0, a bound."),
-            format!("L’écart type de {term} est 0, une borne."),
+            format!("{names}: {estimate}{unit} [{low}; {high}]{p}."),
+            format!("{names} : {estimate}{unit} [{low} ; {high}]{p}."),
         ));
     }
     sentences
+}
+
+/// `F(1, 12.3) = 4.56`.
+pub(crate) fn f_of(language: Language, model: &LinearClipModel) -> String {
+    let (df, denominator) = (model.df, language.fixed(model.df_denominator, 1));
+    let f = language.fixed(model.f, 2);
+    language.pick(format!("F({df}, {denominator}) = {f}"), format!("F({df} ; {denominator}) = {f}"))
+}
+
+/// The odds of a higher rating in the cumulative model; the level that stands higher is told of the other one.
+fn odds(naming: &Naming<'_>, model: &ClipModel, pair: &ClipPair, factor: &str) -> String {
+    let language = naming.language;
+    let (low, high, odds, [least, most], share) = if pair.odds_ratio >= 1.0 {
+        (&pair.a, &pair.b, pair.odds_ratio, pair.interval_95, pair.higher)
+    } else {
+        let [least, most] = pair.interval_95;
+        (&pair.b, &pair.a, 1.0 / pair.odds_ratio, [1.0 / most, 1.0 / least], 1.0 - pair.higher)
+    };
+    let (low, high) = (naming.level(factor, low), naming.level(factor, high));
+    let [odds, least, most] = [odds, least, most].map(|value| language.fixed(value, 1));
+    let share = language.percent(share);
+    let p = language.p(model.p);
+    language.pick(
+        format!("In steps of the scale (cumulative mixed model, {p}): {high} against {low}: odds of a higher rating {odds} times ({least} to {most}); {high} is the higher of two in {share} on the model’s latent scale."),
+        format!("En échelons (modèle mixte cumulatif, {p}) : {high} par rapport à {low} : chances d’une note plus haute multipliées par {odds} ({least} à {most}) ; {high} est la plus haute de deux notes dans {share} des cas sur l’échelle latente du modèle."),
+    )
 }

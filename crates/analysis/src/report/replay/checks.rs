@@ -1,12 +1,13 @@
 //! Every number of the results under a key, with the call that computes it again.
 
 use mimique_stats::{
-    IntraclassCorrelation, MeasurementLevel, MixedModel, Outcome, TestResult as _,
+    IntraclassCorrelation, LinearMixedModel, MeasurementLevel, Outcome, TestResult as _,
 };
 
 use super::check::{Check, Family, Nearness};
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::comparison::Comparison;
+use crate::hypothesis::other_clips::DecidingTest;
 use crate::hypothesis::person_level::{Pair, PersonLevel};
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::trial_level::TrialLevel;
@@ -31,13 +32,21 @@ impl Collector {
             all.person_level(&key, &result.recommended);
             let mut deciding = deciding_key(&key, &result.recommended);
             if let Some(found) = &result.other_clips {
-                all.line(format!("{key}:min F'"), &found.min_f);
-                if let (true, Some(p)) = (found.decides, found.p()) {
-                    let key = format!("{key}:other clips");
-                    let call = Call::new(Design::Given, MixedModel::NAMES.function).given(p);
-                    all.checks.push(Check::new(key.clone(), call, vec![("p", p)]));
-                    deciding = Some(key);
+                if let Some(min_f) = &found.min_f {
+                    all.line(format!("{key}:min F'"), min_f);
                 }
+                let decides = found.deciding_test().filter(|_| found.decides);
+                deciding = match decides {
+                    Some(DecidingTest::LinearModel(model)) => {
+                        let key = format!("{key}:other clips");
+                        let name = LinearMixedModel::NAMES.function;
+                        let call = Call::new(Design::Given, name).given(model.p);
+                        all.checks.push(Check::new(key.clone(), call, vec![("p", model.p)]));
+                        Some(key)
+                    }
+                    Some(DecidingTest::MinF(_)) => Some(format!("{key}:min F'")),
+                    None => deciding.filter(|_| !found.decides),
+                };
             }
             if let Some(found) = &result.equivalence {
                 all.line(format!("{key}:beside"), &found.beside.line);
@@ -52,7 +61,7 @@ impl Collector {
             if let (Some(p), Some(p_holm)) = (difference, result.p_difference_holm_over_hypotheses)
             {
                 let key = format!("{key}:difference");
-                let call = Call::new(Design::Given, MixedModel::NAMES.function).given(p);
+                let call = Call::new(Design::Given, LinearMixedModel::NAMES.function).given(p);
                 all.checks.push(Check::new(key.clone(), call, vec![("p", p)]));
                 decided.into.push(format!("{key}:over hypotheses"));
                 decided.of.push(key);

@@ -59,24 +59,45 @@ fn of_questions(writer: &Writer<'_>) -> String {
     text
 }
 
-/// The mixed model of each hypothesis that other clips are asked about.
+/// The mixed models of each hypothesis that other clips are asked about.
 fn of_hypotheses(writer: &Writer<'_>) -> String {
     let mut text = String::new();
     for result in &writer.results.hypotheses {
         let (Some(found), Some(factor)) = (&result.other_clips, result.factors.first()) else {
             continue;
         };
-        if !matches!(found.mixed_model, Some(Outcome::Ok(_))) {
-            continue;
-        }
-        let title = quoted(&format!("Other clips too, hypothesis {} (a = {factor})", result.id));
-        let (measure, factor) = (quoted(&result.measure), quoted(factor));
+        let title = format!("Other clips too, hypothesis {}", result.id);
+        let (measure, of_clips) = (quoted(&result.measure), quoted(factor));
         let levels: Vec<String> = found.levels.iter().map(|level| quoted(level)).collect();
         let levels = levels.join(", ");
-        let _ = writeln!(
-            text,
-            "fit({title}, \"ordinal\", function() {{\n  data <- data.frame(y = number({measure}), a = factor(trials[[{factor}]], c({levels})), person = factor(person), segment = factor(trials$segment), clip = factor(trials$stimulus))\n  ordinal::clmm(ordered(y) ~ a + (1 | person) + (1 | person:a) + (1 | segment) + (1 | clip), data)\n}})"
+        let data = format!(
+            "data.frame(y = number({measure}), a = factor(trials[[{of_clips}]], c({levels})), person = factor(person), segment = factor(trials$segment), clip = factor(trials$stimulus))"
         );
+        // Factors of people, and two factors, stand in no column of trials.
+        let one = found.min_f.is_some();
+        if let (true, Some(Outcome::Ok(model))) = (one, &found.linear_model) {
+            let title = quoted(&format!("{title}, linear (a = {factor})"));
+            let left_out = |own: &str| model.left_out.iter().any(|name| name == own);
+            let terms = [
+                (format!("participant:{factor}"), "person:a"),
+                ("segment".to_owned(), "segment"),
+                (format!("segment:{factor}"), "segment:a"),
+                ("participant:segment".to_owned(), "person:segment"),
+            ];
+            let terms = terms.iter().filter(|(name, _)| !left_out(name));
+            let terms: String = terms.map(|(_, term)| format!(" + (1 | {term})")).collect();
+            let _ = writeln!(
+                text,
+                "fit({title}, \"lmerTest\", function() {{\n  data <- {data}\n  lmerTest::lmer(y ~ a + (1 | person){terms}, data)\n}})"
+            );
+        }
+        if matches!(found.mixed_model, Some(Outcome::Ok(_))) {
+            let title = quoted(&format!("{title}, cumulative (a = {factor})"));
+            let _ = writeln!(
+                text,
+                "fit({title}, \"ordinal\", function() {{\n  data <- {data}\n  ordinal::clmm(ordered(y) ~ a + (1 | person) + (1 | person:a) + (1 | segment) + (1 | clip), data)\n}})"
+            );
+        }
     }
     text
 }

@@ -150,14 +150,12 @@ impl Writer<'_> {
             EffectUnit::Points | EffectUnit::Seconds | EffectUnit::Worth => {
                 language.fixed(value, 2)
             }
-            EffectUnit::Odds => language.fixed(value, 1),
             EffectUnit::Chosen => language.fixed(value * 100.0, 0),
         };
         let unit = match effect.unit {
             EffectUnit::Shares => language.pick(" percentage points", " points de pourcentage"),
             EffectUnit::Seconds => " s",
             EffectUnit::Points => "",
-            EffectUnit::Odds => language.pick(" times the odds", " fois les chances"),
             EffectUnit::Chosen => {
                 language.pick(" % of the choices of one of them", " % des choix de l’un des deux")
             }
@@ -204,10 +202,6 @@ impl Writer<'_> {
                     format!("±{} points de pourcentage", language.fixed(edge * 100.0, 1)),
                 ),
                 (EffectUnit::Seconds, edge) => format!("±{} s", language.fixed(edge, 2)),
-                (EffectUnit::Odds, edge) => language.pick(
-                    format!("odds from 1/{0} to {0}", language.fixed(edge.exp(), 1)),
-                    format!("chances de 1/{0} à {0}", language.fixed(edge.exp(), 1)),
-                ),
                 (EffectUnit::Chosen, edge) => {
                     let [low, high] = [0.5 - edge, 0.5 + edge].map(|share| language.percent(share));
                     language.pick(

@@ -24,7 +24,7 @@ pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
                 writer.export,
                 writer.study,
                 hypothesis,
-                OtherClipsTests::Both,
+                OtherClipsTests::All,
             )
         })
         .collect();

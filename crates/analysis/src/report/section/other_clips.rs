@@ -28,8 +28,8 @@ impl Writer<'_> {
             Some(Outcome::Undefined { reason }) => {
                 let reason = reason.words(language);
                 self.paragraph(
-                    &format!("The mixed model has no result ({reason}): its shares and standard deviations are not drawn."),
-                    &format!("Le modèle mixte n’a pas de résultat ({reason}) : ses parts et ses écarts types ne sont pas dessinés."),
+                    &format!("The cumulative mixed model has no result ({reason}): its shares and standard deviations are not drawn."),
+                    &format!("Le modèle mixte cumulatif n’a pas de résultat ({reason}) : ses parts et ses écarts types ne sont pas dessinés."),
                 );
             }
         }

@@ -9,6 +9,7 @@ use mimique_stats::{EquivalenceVerdict, Outcome};
 use mimique_study::KindOfQuestion as _;
 
 use crate::hypothesis::decision::{Decision, EffectUnit, deciding_p_values, decision, effects};
+use crate::hypothesis::other_clips::{DecidingTest, OtherClips};
 use crate::hypothesis::test_line::TestLine;
 use crate::hypothesis::{HypothesisResult, deciding_test, reading};
 use crate::naming::people_counted;
@@ -171,14 +172,19 @@ impl Writer<'_> {
             format!("{}{}", p_in_paper(language, p), reading::supports(language, of))
         });
         let p: Vec<String> = p.collect();
-        let model = result.other_clips.as_ref().filter(|found| found.decides);
-        if let Some(Some(Outcome::Ok(model))) = model.map(|found| &found.mixed_model) {
-            let ratio = language.fixed(model.likelihood_ratio, 2);
-            parts.push(language.pick(
-                format!("cumulative link mixed model, χ²({}) = {ratio}", model.df),
-                format!("modèle mixte à lien cumulatif, χ²({}) = {ratio}", model.df),
-            ));
-            parts.extend(p);
+        let decides = result.other_clips.as_ref().filter(|found| found.decides);
+        if let Some(test) = decides.and_then(OtherClips::deciding_test) {
+            match test {
+                DecidingTest::LinearModel(model) => {
+                    let f = reading::f_of(language, model);
+                    parts.push(language.pick(
+                        format!("linear mixed model with random participants and segments, {f}"),
+                        format!("modèle linéaire mixte à participants et segments aléatoires, {f}"),
+                    ));
+                    parts.extend(p);
+                }
+                DecidingTest::MinF(line) => parts.extend(test_in_paper(language, line, p)),
+            }
         } else if decision(result) == Decision::Equivalence(EquivalenceVerdict::Different) {
             // The statistic of equivalence does not belong to the p of the difference.
             let test = "two-sided test of the difference";
@@ -198,7 +204,6 @@ impl Writer<'_> {
                         (100.0, 1, language.pick(" percentage points", " points de pourcentage"))
                     }
                     EffectUnit::Seconds => (1.0, 2, " s"),
-                    EffectUnit::Odds => (1.0, 2, ""),
                     EffectUnit::Worth => (1.0, 2, language.pick(" JND", " DJP")),
                     EffectUnit::Chosen => {
                         (100.0, 0, language.pick("% of decided choices", " % des choix tranchés"))
@@ -206,10 +211,6 @@ impl Writer<'_> {
                 };
                 let number = |value: f64| language.fixed(value * scale, decimals);
                 let pair = self.effect_of(factor, effect);
-                let pair = match effect.unit {
-                    EffectUnit::Odds => format!("OR ({pair})"),
-                    _ => pair,
-                };
                 let [low, high] = effect.interval.map(number);
                 let (estimate, covers) = (number(effect.estimate), effect.covers);
                 language.pick(

@@ -78,8 +78,11 @@ pub fn linear_mixed_model(
     let tested = if options.interactions { terms.len() - 1 } else { 0 };
     let fixed = Fixed::of(&factors, &terms, n);
     let columns = fixed.columns();
-    if !determined(&fixed.values, columns) || is_of_one_unit(&factors, &terms[tested], &kept, n) {
+    if !determined(&fixed.values, columns) {
         return Ok(Outcome::undefined(NoEstimate::Singular));
+    }
+    if let Some(grouping) = of_one_unit(&factors, &terms[tested], &kept, n) {
+        return Ok(Outcome::undefined(NoEstimate::OneUnitPerLevel { grouping }));
     }
     // In units of their spread, so that the search does not depend on the unit.
     let standard: Vec<f64> = values.iter().map(|y| (y - mean) / spread).collect();
@@ -147,19 +150,20 @@ pub fn linear_mixed_model(
     }))
 }
 
-/// Whether some grouping whose levels each have one level of the tested term has no more levels than the term: where each
+/// A grouping whose levels each have one level of the tested term, and which has no more levels than the term: where each
 /// emotion has one segment, nobody can tell emotion from segment.
-fn is_of_one_unit(
+fn of_one_unit(
     factors: &[Factor],
     term: &FixedTerm,
     groupings: &[&Factor],
     rows: usize,
-) -> bool {
-    let Some((first, others)) = term.split_first() else { return false };
+) -> Option<String> {
+    let (first, others) = term.split_first()?;
     let cell =
         (others.iter()).fold(factors[*first].clone(), |whole, f| whole.crossed(&factors[*f]));
     let cell = cell.rows(&(0..rows).collect::<Vec<_>>());
-    (groupings.iter()).any(|own| is_part(own, &cell) && own.levels.len() <= cell.levels.len())
+    let same = |own: &&&Factor| is_part(own, &cell) && own.levels.len() <= cell.levels.len();
+    groupings.iter().find(same).map(|own| own.name.clone())
 }
 
 /// The columns of a term, each as a contrast of all coefficients, the constant first.

@@ -196,7 +196,8 @@ fn what_cannot_be_told_is_undefined() {
     assert_eq!(twice.reason(), Some(&NoEstimate::Singular.into()));
     // Each emotion with one segment: nobody can tell them apart.
     let one = fit(&y, &[&segment], &[&person, &segment]).unwrap();
-    assert_eq!(one.reason(), Some(&NoEstimate::Singular.into()));
+    let grouping = "segment".to_owned();
+    assert_eq!(one.reason(), Some(&NoEstimate::OneUnitPerLevel { grouping }.into()));
     // Each segment by one method: clips are the segments; each answer of its own: that is the residual.
     let code = |(s, m): (&u32, &u32)| s * 3 + m;
     let confounded: Vec<u32> = segment.codes.iter().zip(&method.codes).map(code).collect();
