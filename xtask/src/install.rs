@@ -127,6 +127,15 @@ pub const ORDINAL: Package = Package {
     ]),
     elsewhere: "the R package ordinal (install.packages(\"ordinal\"))",
 };
+/// The linear mixed models that ours are compared with.
+pub const LMER_TEST: Package = Package {
+    name: "r-cran-lmertest",
+    sign: Sign::File(&[
+        "/usr/lib/R/site-library/lmerTest/DESCRIPTION",
+        "/usr/local/lib/R/site-library/lmerTest/DESCRIPTION",
+    ]),
+    elsewhere: "the R package lmerTest (install.packages(\"lmerTest\"))",
+};
 /// Python with environments of its own, for the peers of tests and benchmarks.
 pub const PYTHON: Package = Package {
     name: "python3 python3-venv",

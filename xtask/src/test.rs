@@ -74,6 +74,7 @@ fn needed() -> Result<Option<PathBuf>> {
         &install::NGINX,
         &install::R,
         &install::ORDINAL,
+        &install::LMER_TEST,
     ] {
         need(package);
     }

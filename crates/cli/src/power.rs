@@ -31,7 +31,7 @@ pub struct Args {
     /// Simulated studies a point [default: 500, with --mixed 200]
     #[arg(long)]
     runs: Option<usize>,
-    /// Fit the mixed model of other clips too in each of them, which takes its time
+    /// Fit the linear mixed model of other clips in each of them also where it does not decide
     #[arg(long)]
     mixed: bool,
     /// Seed of all simulations
@@ -247,7 +247,7 @@ fn of_clips(out: &mut impl std::io::Write, power: &Power, place: usize) -> std::
     let mixed = power.points.iter().any(|point| own(point).mixed.is_some());
     let falsely =
         power.points.iter().any(|point| point.hypotheses[place].false_positives.is_some());
-    let name = if mixed { "mixed model" } else { "" };
+    let name = if mixed { "linear mixed model" } else { "" };
     write!(
         out,
         "other clips too\n{:>7} {:>8}  {:<22} {name:<22}",

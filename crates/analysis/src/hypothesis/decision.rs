@@ -5,10 +5,10 @@ use mimique_stats::EquivalenceVerdict;
 use mimique_study::TestName;
 
 use crate::choices::preference::Preference;
-use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::is_two_way;
-use crate::hypothesis::other_clips::{DecidingTest, OtherClips};
+use crate::hypothesis::other_clips::DecidingTest;
 use crate::hypothesis::reading::LEVEL;
+use crate::hypothesis::{HypothesisResult, Scope};
 use crate::trials::measure::MeasureKind;
 
 /// More pairs of levels than this have no place in a row.
@@ -36,6 +36,8 @@ pub(crate) enum Decision {
     Equivalence(EquivalenceVerdict),
     /// No test decides.
     NotTested,
+    /// Nothing can be said of other clips.
+    NotForOtherClips,
 }
 
 /// In which unit an effect is.
@@ -87,7 +89,12 @@ pub(crate) struct Effect<'r> {
 
 /// What a hypothesis comes to.
 pub(crate) fn decision(result: &HypothesisResult) -> Decision {
-    let Some(p) = result.p_holm_over_hypotheses.or(result.p) else { return Decision::NotTested };
+    let Some(p) = result.p_holm_over_hypotheses.or(result.p) else {
+        return match result.scope {
+            Scope::OtherClips => Decision::NotForOtherClips,
+            _ => Decision::NotTested,
+        };
+    };
     if result.equivalence.is_some() {
         let p_difference = p_difference(result).unwrap_or(1.0);
         return Decision::Equivalence(EquivalenceVerdict::of(p, p_difference, LEVEL));
@@ -157,7 +164,10 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         return of_choices(preferred);
     }
     let decides = result.other_clips.as_ref().filter(|found| found.decides);
-    if let Some(DecidingTest::LinearModel(model)) = decides.and_then(OtherClips::deciding_test) {
+    if let Some(found) = decides {
+        let Some(DecidingTest::LinearModel(model)) = found.deciding_test() else {
+            return Vec::new();
+        };
         let few = model.pairs.iter().filter(|_| model.pairs.len() <= MOST_PAIRS);
         return few
             .map(|pair| Effect {

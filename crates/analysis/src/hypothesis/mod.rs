@@ -47,6 +47,8 @@ pub(crate) struct HypothesisResult {
     pub measure: String,
     pub kind: MeasureKind,
     pub factors: Vec<String>,
+    /// Which clips the decision is about.
+    pub scope: Scope,
     pub as_in_the_thesis: TrialLevel,
     /// The same of the clips as they are, each person counting once.
     pub recommended: PersonLevel,
@@ -76,6 +78,23 @@ pub(crate) struct HypothesisResult {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub p_difference_holm_over_hypotheses: Option<f64>,
     pub reading: String,
+}
+
+/// Which clips a decision is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Scope {
+    /// Other people, and other clips of other segments.
+    OtherClips,
+    /// Other people who see these clips.
+    TheseClips,
+    /// The answers are about no clips, or the export does not tell their segments.
+    NoClips,
+}
+
+/// Whether the trials of a measure show segments.
+fn has_segments(export: &Export, measure: &Measure) -> bool {
+    measure.trial.iter().any(|trial| export.trials[*trial].segment.is_some())
 }
 
 /// What both kinds of test give, or why neither can be computed.
@@ -142,16 +161,29 @@ pub(crate) fn test_hypothesis(
     let other_clips =
         measure.as_ref().and_then(|measure| of_clips(export, study, hypothesis, measure, clips));
     if let Some(found) = &other_clips {
+        if found.decides {
+            let words = language.pick("Of these clips alone:", "Pour ces extraits seuls :");
+            reading = format!("{words} {reading}");
+        }
         let tested = if is_two_way(hypothesis.test) { 2 } else { 1 };
         let factors = &hypothesis.factors[..hypothesis.factors.len().min(tested)];
-        reading.push(' ');
-        reading += &reading::other_clips(naming, found, kind, factors);
+        let words = reading::other_clips(naming, found, kind, factors);
+        // What decides comes first.
+        reading = match found.decides {
+            true => format!("{words} {reading}"),
+            false => format!("{reading} {words}"),
+        };
     }
     let decided = match &other_clips {
         Some(found) if found.decides => found.p(),
-        // Nothing else stands in for the test that the study file names.
-        None if hypothesis.is_about_other_clips() => None,
         _ => deciding_p(&people),
+    };
+    let scope = match &other_clips {
+        Some(found) if found.decides => Scope::OtherClips,
+        _ if measure.as_ref().is_some_and(|measure| has_segments(export, measure)) => {
+            Scope::TheseClips
+        }
+        _ => Scope::NoClips,
     };
     let people_by_condition = measure.as_ref().map_or_else(Labelled::default, |measure| {
         conditions::people(export, study, hypothesis, measure)
@@ -164,6 +196,7 @@ pub(crate) fn test_hypothesis(
         kind,
         measure: measure.map_or_else(|| hypothesis.response.clone(), |measure| measure.id),
         factors: hypothesis.factors.clone(),
+        scope,
         matching,
         trials_without_level,
         people_by_condition,

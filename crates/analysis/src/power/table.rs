@@ -139,7 +139,10 @@ fn of_clips(power: &Power, place: usize, language: Language) -> String {
     let falsely =
         power.points.iter().any(|point| point.hypotheses[place].false_positives.is_some());
     let (names, false_names) = language.pick(
-        (["power, min F'", "mixed model"], ["false positives, min F'", "mixed model"]),
+        (
+            ["power, min F'", "linear mixed model"],
+            ["false positives, min F'", "linear mixed model"],
+        ),
         (["puissance, min F'", "modèle mixte"], ["faux positifs, min F'", "modèle mixte"]),
     );
     let count = if mixed { 2 } else { 1 };

@@ -8,7 +8,7 @@ use mimique_analysis::{
 };
 use mimique_locale::Language;
 use mimique_stats::{Numbers, Table, mann_whitney};
-use mimique_study::{Study, config_hash};
+use mimique_study::{Generalise, Study, config_hash};
 use serde_json::{Value, json};
 
 use crate::support::simulated::simulated_export;
@@ -272,7 +272,8 @@ fn a_difference_of_response_times_is_planted_too() {
 
 #[test]
 fn the_preregistration_says_the_test_and_that_it_is_between_participants() {
-    let (study, hash, parameters) = simulated(0.9);
+    let (mut study, hash, parameters) = simulated(0.9);
+    study.hypotheses.iter_mut().for_each(|own| own.generalise = Some(Generalise::TheseClips));
     let result = power(&study, &hash, &parameters, &options(8, 5), &|| {}).unwrap();
     let from = Preregistration {
         study: &study,

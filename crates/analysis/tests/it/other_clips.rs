@@ -1,5 +1,5 @@
-//! Whether what is found holds for other people and other clips: min F' and the mixed model beside each hypothesis that
-//! compares ratings within people, and the mixed model as what decides.
+//! Whether what is found holds for other people and other clips: mixed models and min F' beside each hypothesis that
+//! compares levels, and the linear mixed model as what decides.
 
 use mimique_analysis::{Parameters, PowerOptions, analyze, power};
 use mimique_locale::Language;
@@ -21,16 +21,20 @@ fn hypotheses(study: &Study, people: usize, language: Language) -> Vec<Value> {
     results["hypotheses"].as_array().unwrap().clone()
 }
 
-/// The place of the first hypothesis that has tests of other clips.
+/// The place of the first hypothesis that compares ratings.
 fn place(found: &[Value]) -> usize {
-    found.iter().position(|own| own["other_clips"].is_object()).expect("a comparison of ratings")
+    let is_rating = |own: &Value| own["other_clips"]["mixed_model"].is_object();
+    found.iter().position(is_rating).expect("a comparison of ratings")
 }
 
 #[test]
-fn ratings_within_people_have_both_tests_and_these_clips_decide() {
-    let study = demo_study();
+fn ratings_within_people_have_all_tests_and_the_study_says_which_decides() {
+    let mut study = demo_study();
+    let at = place(&hypotheses(&study, 14, Language::English));
+    study.hypotheses[at].generalise = Some(Generalise::TheseClips);
     let found = hypotheses(&study, 14, Language::English);
-    let own = &found[place(&found)];
+    let own = &found[at];
+    assert_eq!(own["scope"], "these_clips");
     let clips = &own["other_clips"];
     assert_eq!(clips["decides"], false);
     let model = &clips["mixed_model"];
@@ -46,34 +50,34 @@ fn ratings_within_people_have_both_tests_and_these_clips_decide() {
     assert!(odds(&pair["interval_95"][1]) < 1.0 && odds(&pair["odds_ratio"]) > 0.005);
     assert!(odds(&pair["higher"]) < 0.45);
     assert_ne!(own["p"].as_f64(), Some(p));
+    assert_ne!(own["p"], clips["linear_model"]["p"]);
     let reading = own["reading"].as_str().unwrap();
     assert!(reading.contains("odds of a higher rating"), "{reading}");
     assert!(reading.contains("take the clips as they are"), "{reading}");
     assert!(reading.contains("min F'"), "{reading}");
+    assert!(reading.contains("a difference was shown, for these clips"), "{reading}");
 }
 
 #[test]
-fn a_hypothesis_about_other_clips_is_decided_by_the_mixed_model() {
-    let mut study = demo_study();
+fn a_hypothesis_about_other_clips_is_decided_by_the_linear_mixed_model() {
+    let study = demo_study();
     let at = place(&hypotheses(&study, 14, Language::English));
-    study.hypotheses[at].generalise = Some(Generalise::Clips);
     for (language, words) in
         [(Language::English, "which decides this"), (Language::French, "ce qui décide de cette")]
     {
         let found = hypotheses(&study, 14, language);
         let own = &found[at];
-        assert_eq!(own["p"], own["other_clips"]["mixed_model"]["p"]);
+        assert_eq!(own["scope"], "other_clips");
+        assert_eq!(own["p"], own["other_clips"]["linear_model"]["p"]);
         assert!(own["p_holm_over_hypotheses"].as_f64() >= own["p"].as_f64());
         assert!(own["reading"].as_str().unwrap().contains(words), "{}", own["reading"]);
     }
-    // Of four people the spread is not estimated: that is said, and nothing else stands in.
-    let found = hypotheses(&study, 4, Language::English);
-    assert_eq!(found[at]["p"], Value::Null);
-    assert!(
-        found[at]["reading"].as_str().unwrap().contains("gives no p"),
-        "{}",
-        found[at]["reading"]
-    );
+    // The estimate and its interval are those of the model.
+    let pair =
+        &hypotheses(&study, 14, Language::English)[at]["other_clips"]["linear_model"]["pairs"][0];
+    let number = |value: &Value| value.as_f64().unwrap();
+    assert_eq!([&pair["a"], &pair["b"]], ["lsts30", "box"]);
+    assert!(number(&pair["interval_95"][0]) > 0.0 && number(&pair["difference"]) > 0.5, "{pair}");
     let parameters = Parameters::for_study(&study);
     let options = PowerOptions {
         participants: vec![8],
@@ -89,12 +93,57 @@ fn a_hypothesis_about_other_clips_is_decided_by_the_mixed_model() {
     assert_eq!((own.min_f.unwrap().runs, own.mixed.unwrap().runs), (3, 3));
     assert_eq!(own.mixed.unwrap().positive, own.recommended.positive);
     for (language, words) in [
-        (Language::English, "decides: likelihood ratio test of a cumulative link mixed model"),
-        (Language::French, "décide : test du rapport de vraisemblance d’un modèle mixte"),
+        (Language::English, "decides: F test of a linear mixed model"),
+        (Language::French, "décide : test F d’un modèle linéaire mixte"),
     ] {
         let text = preregistered(&study, &parameters, &found, language);
         assert!(text.contains(words), "{text}");
     }
+}
+
+/// In the demonstration each emotion has one performance: nothing tells it from the emotion, whatever the model.
+#[test]
+fn where_each_level_has_one_segment_nothing_is_decided_for_other_clips() {
+    let mut study = demo_study();
+    let at = study.hypotheses.iter().position(|own| own.factors.len() == 2).unwrap();
+    study.hypotheses[at].generalise = Some(Generalise::Clips);
+    for (language, words) in
+        [(Language::English, "has only one unit of"), (Language::French, "n’a qu’une unité de")]
+    {
+        let found = hypotheses(&study, 14, language);
+        assert_eq!(found[at]["p"], Value::Null);
+        let reading = found[at]["reading"].as_str().unwrap();
+        assert!(reading.contains(words), "{reading}");
+    }
+}
+
+/// Clips that differ by chance make false positives of tests that take the clips as they are, the more people there are
+/// the more; not of the linear mixed model.
+#[test]
+fn clips_that_differ_by_chance_make_no_false_positives_of_the_linear_model() {
+    let mut study = demo_study();
+    study.hypotheses.retain(|own| own.factors.len() == 1);
+    let others = study.clone();
+    study.hypotheses.iter_mut().for_each(|own| own.generalise = Some(Generalise::TheseClips));
+    let parameters = Parameters::for_study(&study);
+    let options = PowerOptions {
+        participants: vec![80],
+        clips: Vec::new(),
+        runs: 150,
+        seed: 4,
+        alpha: 0.05,
+        false_positives: true,
+        mixed: false,
+    };
+    let positive = |study: &Study| -> Vec<u64> {
+        let found = power(study, "hash", &parameters, &options, &|| {}).unwrap();
+        let own = found.points[0].hypotheses.iter();
+        own.map(|own| own.false_positives.unwrap().recommended.positive).collect()
+    };
+    let (of_these, of_others) = (positive(&study), positive(&others));
+    // Of 150 draws of 5 %, 15 are as many as in 99 % of cases.
+    assert!(of_others.iter().all(|own| *own <= 15), "{of_others:?} of 150");
+    assert!(of_these.iter().any(|own| *own > 16), "{of_these:?} of 150, of these clips");
 }
 
 /// The places and codes of what is wrong with the demonstration when its first comparison of ratings is changed.
@@ -111,11 +160,9 @@ fn problems(change: impl Fn(&mut Value, usize)) -> Vec<(String, String)> {
 }
 
 #[test]
-fn other_clips_are_asked_about_ratings_of_several_segments_alone() {
+fn other_clips_are_asked_about_where_levels_are_compared() {
     assert_eq!(problems(|_, _| ()), []);
-    let wrong = problems(|file, at| file["hypotheses"][at]["measure"] = "rt".into());
-    assert_eq!(wrong.len(), 1);
-    assert_eq!(wrong[0].1, "not-a-number");
+    assert_eq!(problems(|file, at| file["hypotheses"][at]["measure"] = "rt".into()), []);
     let wrong = problems(|file, at| file["hypotheses"][at]["test"] = "spearman".into());
     assert_eq!(wrong[0].1, "not-a-number");
     let wrong = problems(|file, at| file["hypotheses"][at]["generalise"] = "faces".into());

@@ -6,7 +6,7 @@ use mimique_analysis::{
     power_markdown, power_runs, precision_csv, preregistration,
 };
 use mimique_locale::Language;
-use mimique_study::{StraightLining, Study};
+use mimique_study::{Generalise, StraightLining, Study};
 use serde_json::Value;
 
 fn study(name: &str) -> (Study, String) {
@@ -77,7 +77,8 @@ fn is_the_same_on_any_number_of_threads() {
 /// 0.5 / sqrt(2 / m) * sqrt(n), times the signed rank test's efficiency 3 / pi.
 #[test]
 fn power_is_that_of_the_paired_test() {
-    let (study, hash) = study("demo.json");
+    let (mut study, hash) = study("demo.json");
+    study.hypotheses.iter_mut().for_each(|own| own.generalise = Some(Generalise::TheseClips));
     let mut parameters = Parameters::for_study(&study);
     parameters.dropout =
         mimique_analysis::Dropout { declined: 0.0, per_trial: 0.0, withdrawn: 0.0 };

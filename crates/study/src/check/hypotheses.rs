@@ -2,7 +2,7 @@
 
 mod equivalence;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::issue::{Issues, below};
 use super::problem::Problem;
@@ -10,7 +10,7 @@ use super::values::{Count, Counted, Nearest};
 use super::{Subject, assigned, responses};
 use crate::columns::ASSIGNED_CONDITION;
 use crate::question::{KindOfQuestion as _, Question};
-use crate::study_file::{Hypothesis, Measure, TestName};
+use crate::study_file::{Generalise, Hypothesis, Measure, TestName};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     let hypotheses = &subject.study.hypotheses;
@@ -36,22 +36,49 @@ const SEGMENTS: usize = 5;
 
 /// That a hypothesis about other clips has a test of them, and segments enough.
 fn generalise(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
-    if !hypothesis.is_about_other_clips() {
-        return;
-    }
     let place = below(pointer, "generalise");
-    if !hypothesis.test.holds_for_other_clips() {
+    let asked = hypothesis.generalise == Some(Generalise::Clips);
+    if asked && !hypothesis.test.holds_for_other_clips() {
         let id = hypothesis.id.clone();
         issues.error(&place, Problem::NotOfOtherClips { hypothesis: id });
         return;
     }
     let segments: BTreeSet<&str> = subject.clips.iter().map(|clip| clip.segment.as_str()).collect();
-    if segments.len() < SEGMENTS {
-        let found = segments.len();
-        issues.error(
-            &place,
-            Problem::TooFewSegments { segments: Counted(found, "segment"), needed: SEGMENTS },
-        );
+    if !hypothesis.is_about_other_clips() || segments.is_empty() {
+        return;
+    }
+    if asked && segments.len() < SEGMENTS {
+        let segments = Counted(segments.len(), "segment");
+        issues.error(&place, Problem::TooFewSegments { segments, needed: SEGMENTS });
+    } else if segments.len() < SEGMENTS {
+        let (hypothesis, segments) = (hypothesis.id.clone(), Counted(segments.len(), "segment"));
+        let problem = Problem::FewSegments { hypothesis, segments, needed: SEGMENTS };
+        issues.warning(pointer, problem);
+    } else if of_one_segment_each(subject, hypothesis) {
+        let hypothesis = hypothesis.id.clone();
+        issues.warning(pointer, Problem::OneSegmentPerLevel { hypothesis });
+    }
+}
+
+/// Whether each level that is compared has one segment of its own, which nothing tells from the level; of two factors, each
+/// combination of levels one clip.
+fn of_one_segment_each(subject: &Subject<'_>, hypothesis: &Hypothesis) -> bool {
+    let factors = &hypothesis.factors[..hypothesis.factors.len().min(2)];
+    let names = subject.study.factor_names();
+    if factors.is_empty() || !factors.iter().all(|factor| names.contains(factor)) {
+        return false;
+    }
+    let mut segments_of: BTreeMap<Vec<Option<String>>, BTreeSet<&str>> = BTreeMap::new();
+    let mut levels_of: BTreeMap<&str, BTreeSet<Vec<Option<String>>>> = BTreeMap::new();
+    for clip in subject.clips {
+        let level: Vec<_> = factors.iter().map(|factor| clip.factor_text(factor)).collect();
+        segments_of.entry(level.clone()).or_default().insert(&clip.segment);
+        levels_of.entry(&clip.segment).or_default().insert(level);
+    }
+    let alone = segments_of.values().all(|segments| segments.len() == 1);
+    match factors {
+        [_] => alone && levels_of.values().all(|levels| levels.len() == 1),
+        _ => alone,
     }
 }
 

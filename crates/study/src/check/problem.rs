@@ -612,6 +612,12 @@ NotOfOtherClips { hypothesis: String }: "not-a-number",
 TooFewSegments { segments: Counted, needed: usize }: "wrong-length",
     "{segments}, of which a mixed model cannot tell how far others would differ",
     "show at least {needed} segments, or leave out \"generalise\"";
+FewSegments { hypothesis: String, segments: Counted, needed: usize }: "few-segments",
+    "\"{hypothesis}\" is decided for other clips too, of which {segments} tell little",
+    "show at least {needed} segments, or add \"generalise\": \"these clips\"";
+OneSegmentPerLevel { hypothesis: String }: "few-segments",
+    "\"{hypothesis}\" is decided for other clips too, but each level that it compares has one segment, so that nothing tells them apart and there will be no decision",
+    "show several segments of each level, or add \"generalise\": \"these clips\"";
 NoSmallestEffect { hypothesis: String }: "missing-key",
     "\"{hypothesis}\" tests equivalence without the smallest difference that matters",
     "add \"smallestEffect\" in points of the scale, such as 0.5, chosen before there are answers";

@@ -27,8 +27,9 @@ pub struct Hypothesis {
     /// The levels of the first factor that are compared, in the order of signs; all if not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub levels: Vec<super::FactorValue>,
-    /// What else the hypothesis is about: with `clips` a linear mixed model with random effects of people and of segments
-    /// decides, not the test of these clips. Of levels that are compared and of interactions.
+    /// Which clips the hypothesis is about. Without it, or with `clips`, levels and interactions are decided for other people
+    /// and other clips alike, by a linear mixed model with random effects of people and of segments. With `these clips` the
+    /// test of these clips decides, and the report says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub generalise: Option<Generalise>,
     /// Of the test `equivalence`: the smallest difference that matters, either way, in points of the scale (of right
@@ -40,7 +41,7 @@ pub struct Hypothesis {
     pub smallest_effect_reason: Option<LocalText>,
 }
 
-/// What a hypothesis is about beyond the people and clips of the study.
+/// Which clips a hypothesis is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "camelCase")]
 pub enum Generalise {
@@ -80,9 +81,9 @@ pub enum TestName {
 }
 
 impl Hypothesis {
-    /// Whether it is about other people and other clips, not about these clips.
+    /// Whether it is decided for other people and other clips alike, not for these clips.
     pub fn is_about_other_clips(&self) -> bool {
-        self.generalise == Some(Generalise::Clips)
+        self.test.holds_for_other_clips() && self.generalise != Some(Generalise::TheseClips)
     }
 }
 

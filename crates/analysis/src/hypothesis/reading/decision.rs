@@ -3,8 +3,10 @@
 use mimique_locale::Language;
 
 use super::verdict;
-use crate::hypothesis::HypothesisResult;
-use crate::hypothesis::decision::{Decision, Sought, Supports, deciding_p_values};
+use crate::hypothesis::decision::{
+    Decision, Sought, Supports, deciding_p_values, decision as decided,
+};
+use crate::hypothesis::{HypothesisResult, Scope};
 
 /// A shape that says the same as the words, without colour: filled where something was shown.
 pub(crate) fn mark(decision: Decision) -> &'static str {
@@ -14,7 +16,7 @@ pub(crate) fn mark(decision: Decision) -> &'static str {
         Decision::Equivalence(Verdict::Equivalent) => "■",
         Decision::Equivalence(Verdict::DifferentButSmall) => "◐",
         Decision::NotShown(_) | Decision::Equivalence(Verdict::Undecided) => "○",
-        Decision::NotTested => "–",
+        Decision::NotTested | Decision::NotForOtherClips => "–",
     }
 }
 
@@ -34,7 +36,7 @@ pub(crate) fn deciding_p(language: Language, result: &HypothesisResult) -> Vec<S
 }
 
 /// The decision in words.
-pub(crate) fn decision(language: Language, decision: Decision) -> &'static str {
+fn decision(language: Language, decision: Decision) -> &'static str {
     match decision {
         Decision::Shown(Sought::Difference) => {
             language.pick("a difference was shown", "une différence a été montrée")
@@ -56,5 +58,20 @@ pub(crate) fn decision(language: Language, decision: Decision) -> &'static str {
         }
         Decision::Equivalence(found) => verdict(language, found),
         Decision::NotTested => language.pick("not tested", "non testée"),
+        Decision::NotForOtherClips => {
+            language.pick("not decided for other clips", "non décidée pour d’autres extraits")
+        }
+    }
+}
+
+/// The decision of a hypothesis, and of which clips it is where these are not others, too.
+pub(crate) fn decision_of(language: Language, result: &HypothesisResult) -> String {
+    let found = decided(result);
+    let words = decision(language, found);
+    match (result.scope, found) {
+        (Scope::TheseClips, found) if found != Decision::NotTested => {
+            format!("{words}{}", language.pick(", for these clips", ", pour ces extraits"))
+        }
+        _ => words.to_owned(),
     }
 }

@@ -15,14 +15,13 @@ use mimique_stats::{Outcome, Term};
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::call::Design;
 use crate::hypothesis::comparison::Comparison;
-use crate::hypothesis::decision::decision as decided;
 use crate::hypothesis::person_level::PersonLevel;
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::undefined::TestOutcome;
 use crate::naming::Naming;
 use crate::naming::people_counted;
 use crate::trials::measure::MeasureKind;
-pub(crate) use decision::{deciding_p, decision, mark, supports};
+pub(crate) use decision::{deciding_p, decision_of, mark, supports};
 pub(crate) use detection::d_prime_by;
 pub(crate) use equivalence::{equivalence, verdict};
 pub(crate) use matching::{unequal_exclusion, unmatched};
@@ -211,7 +210,7 @@ pub(crate) fn over_hypotheses(
     tested: usize,
 ) -> String {
     let corrected = deciding_p(language, result).join(", ");
-    let words = decision(language, decided(result));
+    let words = decision_of(language, result);
     language.pick(
         format!("Corrected for the {tested} hypotheses of this study: {words}, {corrected}; this p decides. Before that correction:"),
         format!("Après correction pour les {tested} hypothèses de cette étude : {words}, {corrected} ; c’est ce p qui décide. Avant cette correction :"),
@@ -238,8 +237,8 @@ pub(crate) fn trial_level_caution(language: Language) -> &'static str {
 /// Said wherever interactions are tested by ranks.
 pub(crate) fn interaction_caution(language: Language) -> &'static str {
     language.pick(
-        "Interactions of factors of the clips are tested by the aligned rank transform, which is not reliable on ratings of few steps and takes the clips as they are: where clips differ by chance, it finds an interaction that is none far more often than in 5 % of studies. Take what it shows for a hint, and check it with a mixed model before relying on it.",
-        "Les interactions de facteurs des extraits sont testées par la transformation des rangs alignés, qui n’est pas fiable sur des notes à peu d’échelons et prend les extraits tels qu’ils sont : là où des extraits diffèrent par hasard, elle trouve une interaction qui n’en est pas bien plus souvent que dans 5 % des études. Prenez ce qu’elle montre pour un indice, et vérifiez-le par un modèle mixte avant de vous y fier.",
+        "Of these clips, interactions of factors of the clips are tested by the aligned rank transform, which is not reliable on ratings of few steps: where clips differ by chance, it finds an interaction that is none far more often than in 5 % of studies. Take what it shows for a hint. The linear mixed model decides unless a hypothesis is about these clips.",
+        "Pour ces extraits, les interactions de facteurs des extraits sont testées par la transformation des rangs alignés, qui n’est pas fiable sur des notes à peu d’échelons : là où des extraits diffèrent par hasard, elle trouve une interaction qui n’en est pas bien plus souvent que dans 5 % des études. Prenez ce qu’elle montre pour un indice. Le modèle linéaire mixte décide, sauf si une hypothèse porte sur ces extraits.",
     )
 }
 
@@ -254,7 +253,7 @@ pub(crate) fn no_proof(language: Language) -> &'static str {
 /// Said wherever tests of person means stand.
 pub(crate) fn these_clips_caution(language: Language) -> &'static str {
     language.pick(
-        "The columns “recommended, of these clips” take the clips as they are. Where clips differ by chance beyond their method, such tests find differences that other clips would not show, the more people there are the more often: with 80 people an interaction that is none in about 21 % of studies. Whether other clips would show it too, min F' and the mixed model say, where they stand.",
-        "Les colonnes « recommandé, pour ces extraits » prennent les extraits tels qu’ils sont. Là où des extraits diffèrent par hasard au-delà de leur méthode, ces tests trouvent des différences que d’autres extraits ne montreraient pas, d’autant plus souvent qu’il y a de personnes : avec 80 personnes, une interaction qui n’en est pas dans environ 21 % des études. Si d’autres extraits la montreraient aussi, min F' et le modèle mixte le disent, là où ils figurent.",
+        "The columns “recommended, of these clips” take the clips as they are. Where clips differ by chance beyond their method, such tests find differences that other clips would not show, the more people there are the more often: with 80 people an interaction that is none in about 21 % of studies. The linear mixed model takes people and clips as drawn at random; it decides unless a hypothesis is about these clips.",
+        "Les colonnes « recommandé, pour ces extraits » prennent les extraits tels qu’ils sont. Là où des extraits diffèrent par hasard au-delà de leur méthode, ces tests trouvent des différences que d’autres extraits ne montreraient pas, d’autant plus souvent qu’il y a de personnes : avec 80 personnes, une interaction qui n’en est pas dans environ 21 % des études. Le modèle linéaire mixte prend personnes et extraits comme tirés au hasard ; il décide, sauf si une hypothèse porte sur ces extraits.",
     )
 }

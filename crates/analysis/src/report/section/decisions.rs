@@ -8,6 +8,7 @@ use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::decision::{
     Decision, Effect, EffectOf, EffectUnit, deciding_p_values, decision, effects,
 };
+use crate::hypothesis::other_clips::DecidingTest;
 use crate::hypothesis::reading;
 use crate::naming::people_counted;
 use crate::report::figure::flow_chart::flow_in_words;
@@ -115,7 +116,7 @@ impl Writer<'_> {
             };
             table.data.row([
                 format!("{}. {}", result.id, result.statement),
-                format!("{} {}", reading::mark(found), reading::decision(language, found)),
+                format!("{} {}", reading::mark(found), reading::decision_of(language, result)),
                 lines.join("; "),
                 p,
                 people,
@@ -229,6 +230,13 @@ impl Writer<'_> {
 /// The effect size of the test that decides, where there is no difference of two levels to tell.
 fn effect_size(writer: &Writer<'_>, result: &HypothesisResult) -> Option<String> {
     let language = writer.language();
+    match result.other_clips.as_ref().filter(|found| found.decides).map(|own| own.deciding_test()) {
+        None => {}
+        Some(Some(DecidingTest::LinearModel(model))) => {
+            return Some(reading::f_of(language, model));
+        }
+        Some(_) => return None,
+    }
     let Outcome::Ok(line) = result.recommended.overall.last()? else { return None };
     let effect = line.row.effect?;
     Some(format!("{} = {}", line.names.effect_symbol, language.fixed(effect, 2)))

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_report::document::Block;
 
-use crate::hypothesis::reading;
+use crate::hypothesis::{Scope, reading};
 use crate::report::section::Writer;
 
 impl Writer<'_> {
@@ -36,7 +36,9 @@ impl Writer<'_> {
             "As in the thesis: Kruskal-Wallis, Wilcoxon (R of 2019: zeros dropped, exact only below 50 differences without ties and zeros, else normal with continuity correction), Scheirer-Ray-Hare (type I sums of squares, corrected for ties) and chi-square (Yates’s correction for two by two) on single trials.",
             "Comme dans la thèse : Kruskal-Wallis, Wilcoxon (R de 2019 : zéros supprimés, exact seulement sous 50 différences sans ex æquo ni zéros, sinon normal avec correction de continuité), Scheirer-Ray-Hare (sommes de carrés de type I, corrigées des ex æquo) et khi-deux (correction de Yates pour deux par deux) sur les essais pris un à un.",
         );
-        if self.one_clip_a_cell() {
+        let for_others =
+            self.results.hypotheses.iter().any(|result| result.scope == Scope::OtherClips);
+        if self.one_clip_a_cell() && !for_others {
             self.blocks.push(Block::Caution(
                 language
                     .pick(

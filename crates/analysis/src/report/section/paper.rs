@@ -10,7 +10,7 @@ use mimique_study::KindOfQuestion as _;
 
 use crate::hypothesis::decision::{Decision, EffectUnit, deciding_p_values, decision, effects};
 use crate::hypothesis::other_clips::{DecidingTest, OtherClips};
-use crate::hypothesis::test_line::TestLine;
+use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::{HypothesisResult, deciding_test, reading};
 use crate::naming::people_counted;
 use crate::report::results::AboutPeople;
@@ -53,12 +53,7 @@ impl Writer<'_> {
         sentences.extend(self.about_people_in_paper());
         sentences.push(self.clips_in_paper());
         sentences.extend(self.questions_in_paper());
-        if !hypotheses.is_empty() {
-            sentences.push(language.pick(
-                "Each person’s answers were averaged within levels, so that a person counts once. Several levels were compared by Friedman’s test with Iman and Davenport’s F, two by Wilcoxon’s exact signed rank test, interactions by the aligned rank transform; differences are Hodges-Lehmann estimates.",
-                "Les réponses de chaque personne ont été moyennées par niveau, de sorte qu’une personne compte une fois. Plusieurs niveaux ont été comparés par le test de Friedman avec le F d’Iman et Davenport, deux par le test exact des rangs signés de Wilcoxon, les interactions par la transformation des rangs alignés ; les différences sont des estimations de Hodges-Lehmann.",
-            ).to_owned());
-        }
+        sentences.extend(self.tests_in_paper(hypotheses));
         let tested = hypotheses.iter().filter(|result| result.p.is_some()).count();
         if tested > 1 {
             sentences.push(language.pick(
@@ -67,6 +62,60 @@ impl Writer<'_> {
             ));
         }
         sentences.join(" ")
+    }
+
+    /// By which tests the hypotheses were decided, a sentence each.
+    fn tests_in_paper(&self, hypotheses: &[HypothesisResult]) -> Vec<String> {
+        let language = self.language();
+        let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+        let mut rank_estimates = false;
+        for result in hypotheses {
+            let decides = result.other_clips.as_ref().filter(|own| own.decides);
+            let test = match (decides, deciding_test(&result.recommended)) {
+                (Some(own), _) => match own.deciding_test() {
+                    Some(DecidingTest::LinearModel(_)) => language.pick(
+                        "a linear mixed model, fitted by restricted maximum likelihood with random effects of participants, of segments, of both at each level, and of participants for each segment, with Satterthwaite’s degrees of freedom",
+                        "un modèle linéaire mixte, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des segments, de chacun à chaque niveau, et des participants pour chaque segment, aux degrés de liberté de Satterthwaite",
+                    )
+                    .to_owned(),
+                    Some(DecidingTest::MinF(line)) => test_in_methods(language, line),
+                    None => continue,
+                },
+                (None, Some(Outcome::Ok(line))) => {
+                    rank_estimates |= result.recommended.pairs.iter().any(|pair| pair.difference.is_some());
+                    test_in_methods(language, line)
+                }
+                _ => continue,
+            };
+            match found.iter_mut().find(|(other, _)| *other == test) {
+                Some((_, ids)) => ids.push(&result.id),
+                None => found.push((test, vec![&result.id])),
+            }
+        }
+        let mut sentences: Vec<String> = found
+            .into_iter()
+            .map(|(test, ids)| {
+                let ids = listed(language, &ids);
+                language.pick(
+                    format!(
+                        "{ids} {} tested by {test}.",
+                        if ids.contains(' ') { "were" } else { "was" }
+                    ),
+                    format!(
+                        "{ids} {} par {test}.",
+                        if ids.contains(' ') { "ont été testées" } else { "a été testée" }
+                    ),
+                )
+            })
+            .collect();
+        if rank_estimates {
+            let words = language.pick(
+                "Differences of these tests are Hodges-Lehmann estimates.",
+                "Les différences de ces tests sont des estimations de Hodges-Lehmann.",
+            );
+            sentences.push(words.to_owned());
+        }
+        sentences
     }
 
     /// Numbers that people told about themselves, such as their age.
@@ -165,8 +214,7 @@ impl Writer<'_> {
     fn result_in_paper(&self, result: &HypothesisResult) -> String {
         let language = self.language();
         let statement = result.statement.trim_end_matches(['.', ' ']);
-        let found = reading::decision(language, decision(result));
-        let mut parts = vec![found.to_owned()];
+        let mut parts = vec![reading::decision_of(language, result)];
         let p = deciding_p_values(result).into_iter();
         let p = p.map(|(of, p)| {
             format!("{}{}", p_in_paper(language, p), reading::supports(language, of))
@@ -227,6 +275,52 @@ impl Writer<'_> {
         }
         sentence.push('.');
         sentence
+    }
+}
+
+/// A test with what it counts as one observation.
+fn test_in_methods(language: Language, line: &TestLine) -> String {
+    let of = match &line.unit {
+        Unit::Trials => language.pick("on single trials", "sur les essais"),
+        Unit::PersonMeans => {
+            language.pick("on one mean per participant", "sur une moyenne par participant")
+        }
+        Unit::MeansWithinPeople => language.pick(
+            "on one mean per participant and level",
+            "sur une moyenne par participant et niveau",
+        ),
+        Unit::DifferencesOfPeople(_) => language.pick(
+            "on each participant’s difference between two levels",
+            "sur la différence de chaque participant entre deux niveaux",
+        ),
+        Unit::CorrelationsOfPeople => language
+            .pick("on each participant’s correlation", "sur la corrélation de chaque participant"),
+        Unit::ChoicesOfPeople => language.pick(
+            "on how much more often each participant chose one level than the other",
+            "sur l’excès de choix de l’un des niveaux par chaque participant",
+        ),
+        Unit::WinsOfPeople => language.pick(
+            "on how often each participant chose each level",
+            "sur le nombre de choix de chaque niveau par chaque participant",
+        ),
+        Unit::ClusteredByPerson => {
+            language.pick("clustered by participant", "à erreurs groupées par participant")
+        }
+        Unit::PeopleAndSegments => {
+            language.pick("over participants and segments", "sur les participants et les segments")
+        }
+    };
+    format!("{} {of}", line.names.in_words[language.pick(0, 1)])
+}
+
+/// `H1, H2 and H3`.
+fn listed(language: Language, names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [before @ .., last] => {
+            format!("{} {} {last}", before.join(", "), language.pick("and", "et"))
+        }
     }
 }
 

@@ -71,6 +71,9 @@ pub(super) struct Block {
     pub first: usize,
     /// How many there are.
     pub size: usize,
+    /// The first block whose answers have the same effects, counted from the first of the block, and the same of the rest:
+    /// where all people see all clips, block 0.
+    pub like: usize,
 }
 
 /// The random effects, ordered: first those that are eliminated, block by block (of each person, say, the person's
@@ -101,7 +104,12 @@ impl Layout {
         // The coarsest of the family stands last and says which block an answer is in.
         let block_of = |row: usize| family.last().map_or(0, |term| groupings[*term].codes[row]);
         let mut order: Vec<usize> = (0..rows).collect();
-        order.sort_by_key(|row| block_of(*row));
+        // Within a block by the rest, so that answers to the same clips have the same places.
+        let of_rest =
+            |row: usize| terms[eliminated..].iter().map(move |t| groupings[*t].codes[row]);
+        order.sort_by(|a, b| {
+            block_of(*a).cmp(&block_of(*b)).then_with(|| of_rest(*a).cmp(of_rest(*b)))
+        });
         let mut effect = vec![0; rows * terms.len()];
         let mut blocks: Vec<Block> = Vec::new();
         let mut known: HashMap<(usize, u32), u32> = HashMap::new();
@@ -109,7 +117,7 @@ impl Layout {
         for (place, &row) in order.iter().enumerate() {
             let starts = place == 0 || block_of(order[place - 1]) != block_of(row);
             if starts {
-                blocks.push(Block { rows: place..place, first: next, size: 0 });
+                blocks.push(Block { rows: place..place, first: next, size: 0, like: blocks.len() });
             }
             for (position, term) in family.iter().enumerate() {
                 let own = known.entry((*term, groupings[*term].codes[row])).or_insert_with(|| {
@@ -130,6 +138,7 @@ impl Layout {
             }
             next += groupings[*term].levels.len();
         }
+        alike(&mut blocks, &effect, terms.len(), eliminated);
         Self {
             rows: order,
             blocks,
@@ -149,6 +158,19 @@ impl Layout {
 
     pub(super) fn size(&self) -> usize {
         self.in_blocks + self.in_rest
+    }
+}
+
+/// Finds the blocks that are as one before them.
+fn alike(blocks: &mut [Block], effect: &[u32], terms: usize, eliminated: usize) {
+    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
+    for (place, block) in blocks.iter_mut().enumerate() {
+        let own = &effect[block.rows.start * terms..block.rows.end * terms];
+        let relative = own.iter().enumerate().map(|(i, effect)| match i % terms < eliminated {
+            true => effect - block.first as u32,
+            false => *effect,
+        });
+        block.like = *known.entry(relative.collect()).or_insert(place);
     }
 }
 

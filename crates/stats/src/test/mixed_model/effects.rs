@@ -11,30 +11,69 @@ use crate::numerics::dot;
 /// A factored system.
 #[derive(Clone)]
 pub(super) struct Factored {
+    /// Where L and X of each block begin; blocks that are alike share them where weights are.
+    at: Vec<[usize; 2]>,
     /// L of each block, one after the other.
     blocks: Vec<f64>,
     /// X of each block, block's effects x rest.
     cross: Vec<f64>,
     /// L of S.
     rest: Vec<f64>,
+    /// How many blocks each stands for.
+    count: Vec<usize>,
     /// ln det of the whole.
     pub ln_det: f64,
 }
 
+/// What weighs the answers.
+#[derive(Clone, Copy)]
+pub(super) enum Weights<'w> {
+    /// Each by itself.
+    Own(&'w [f64]),
+    /// All alike, with 1: blocks of the same answers are the same.
+    One,
+}
+
 impl Factored {
+    /// A system whose blocks are all different.
     pub(super) fn new(layout: &Layout) -> Self {
+        Self::of(layout, |place| place)
+    }
+
+    /// A system of answers that weigh alike.
+    pub(super) fn of_equal_weights(layout: &Layout) -> Self {
+        Self::of(layout, |place| layout.blocks[place].like)
+    }
+
+    fn of(layout: &Layout, like: impl Fn(usize) -> usize) -> Self {
         let rest = layout.in_rest;
-        Self {
-            blocks: vec![0.0; layout.blocks.iter().map(|block| block.size * block.size).sum()],
-            cross: vec![0.0; layout.in_blocks * rest],
-            rest: vec![0.0; rest * rest],
-            ln_det: 0.0,
+        let (mut own, mut cross) = (0, 0);
+        let mut at: Vec<[usize; 2]> = Vec::with_capacity(layout.blocks.len());
+        let mut count = vec![0; layout.blocks.len()];
+        for (place, block) in layout.blocks.iter().enumerate() {
+            let like = like(place);
+            count[like] += 1;
+            if like < place {
+                at.push(at[like]);
+                continue;
+            }
+            at.push([own, cross]);
+            own += block.size * block.size;
+            cross += block.size * rest;
         }
+        let [blocks, cross, rest] = [own, cross, rest * rest].map(|size| vec![0.0; size]);
+        Self { at, blocks, cross, rest, count, ln_det: 0.0 }
+    }
+
+    /// L and X of a block.
+    fn block(&self, layout: &Layout, place: usize) -> (&[f64], &[f64]) {
+        let ([own, cross], size) = (self.at[place], layout.blocks[place].size);
+        (&self.blocks[own..own + size * size], &self.cross[cross..cross + size * layout.in_rest])
     }
 
     /// Factors the system of these standard deviations (a term each) and weights (an answer each). Whether that
     /// succeeded: not where a number is none.
-    pub(super) fn factor(&mut self, layout: &Layout, scale: &[f64], weights: &[f64]) -> bool {
+    pub(super) fn factor(&mut self, layout: &Layout, scale: &[f64], weights: Weights<'_>) -> bool {
         let (rest, k) = (layout.in_rest, layout.eliminated);
         self.blocks.fill(0.0);
         self.cross.fill(0.0);
@@ -43,18 +82,26 @@ impl Factored {
             self.rest[i * rest + i] = 1.0;
         }
         self.ln_det = 0.0;
-        let mut start = 0;
-        for block in &layout.blocks {
-            let size = block.size;
+        let mut nonzero: Vec<u32> = Vec::with_capacity(rest);
+        for (number, block) in layout.blocks.iter().enumerate() {
+            if self.count[number] == 0 {
+                continue;
+            }
+            let count = self.count[number] as f64;
+            let (size, [start, cross]) = (block.size, self.at[number]);
             let own = &mut self.blocks[start..start + size * size];
-            let cross = &mut self.cross[block.first * rest..(block.first + size) * rest];
+            let cross = &mut self.cross[cross..cross + size * rest];
             for i in 0..size {
                 own[i * size + i] = 1.0;
             }
             for place in block.rows.clone() {
                 let effects = layout.effects(place);
+                let weight = match weights {
+                    Weights::Own(weights) => weights[place],
+                    Weights::One => 1.0,
+                };
                 for (i, effect) in effects.iter().enumerate() {
-                    let by = weights[place] * scale[i];
+                    let by = weight * scale[i];
                     if i < k {
                         let row = *effect as usize - block.first;
                         for (j, other) in effects[..k].iter().enumerate() {
@@ -68,31 +115,45 @@ impl Factored {
                         let row = *effect as usize - layout.in_blocks;
                         for (j, other) in effects.iter().enumerate().skip(k) {
                             self.rest[row * rest + (*other as usize - layout.in_blocks)] +=
-                                by * scale[j];
+                                count * by * scale[j];
                         }
                     }
                 }
             }
             match cholesky(own, size) {
-                Some(ln_det) => self.ln_det += ln_det,
+                Some(ln_det) => self.ln_det += count * ln_det,
                 None => return false,
             }
-            // X = L^-1 A, row after row; each then leaves the rest's lower half.
+            // X = L^-1 A, row after row; each then leaves the rest's lower half. Effects of people with a segment meet
+            // few of the rest.
             for i in 0..size {
                 let (before, here) = cross.split_at_mut(i * rest);
                 let row = &mut here[..rest];
                 for j in 0..i {
                     let by = own[i * size + j];
-                    row.iter_mut().zip(&before[j * rest..]).for_each(|(a, x)| *a -= by * x);
+                    if by != 0.0 {
+                        row.iter_mut().zip(&before[j * rest..]).for_each(|(a, x)| *a -= by * x);
+                    }
                 }
                 let by = 1.0 / own[i * size + i];
                 row.iter_mut().for_each(|a| *a *= by);
-                for (r, x) in row.iter().enumerate().filter(|(_, x)| **x != 0.0) {
-                    let lower = &mut self.rest[r * rest..=r * rest + r];
-                    lower.iter_mut().zip(row.iter()).for_each(|(s, y)| *s -= x * y);
+                nonzero.clear();
+                nonzero.extend((0..rest as u32).filter(|r| row[*r as usize] != 0.0));
+                if nonzero.len() * 2 > rest {
+                    for r in nonzero.iter().map(|r| *r as usize) {
+                        let x = count * row[r];
+                        let lower = &mut self.rest[r * rest..=r * rest + r];
+                        lower.iter_mut().zip(row.iter()).for_each(|(s, y)| *s -= x * y);
+                    }
+                } else {
+                    for (n, r) in nonzero.iter().map(|r| *r as usize).enumerate() {
+                        let x = count * row[r];
+                        for c in nonzero[..=n].iter().map(|c| *c as usize) {
+                            self.rest[r * rest + c] -= x * row[c];
+                        }
+                    }
                 }
             }
-            start += size * size;
         }
         match cholesky(&mut self.rest, rest) {
             Some(ln_det) => self.ln_det += ln_det,
@@ -105,28 +166,24 @@ impl Factored {
     pub(super) fn solve(&self, layout: &Layout, values: &mut [f64]) {
         let rest = layout.in_rest;
         let (own, of_rest) = values.split_at_mut(layout.in_blocks);
-        let mut start = 0;
-        for block in &layout.blocks {
-            let size = block.size;
-            let part = &mut own[block.first..block.first + size];
-            forward(&self.blocks[start..start + size * size], size, part);
+        for (number, block) in layout.blocks.iter().enumerate() {
+            let (lower, cross) = self.block(layout, number);
+            let part = &mut own[block.first..block.first + block.size];
+            forward(lower, block.size, part);
             for (i, value) in part.iter().enumerate() {
-                let cross = &self.cross[(block.first + i) * rest..][..rest];
+                let cross = &cross[i * rest..][..rest];
                 of_rest.iter_mut().zip(cross).for_each(|(r, x)| *r -= value * x);
             }
-            start += size * size;
         }
         forward(&self.rest, rest, of_rest);
         backward(&self.rest, rest, of_rest);
-        let mut start = 0;
-        for block in &layout.blocks {
-            let size = block.size;
-            let part = &mut own[block.first..block.first + size];
+        for (number, block) in layout.blocks.iter().enumerate() {
+            let (lower, cross) = self.block(layout, number);
+            let part = &mut own[block.first..block.first + block.size];
             for (i, value) in part.iter_mut().enumerate() {
-                *value -= dot(&self.cross[(block.first + i) * rest..][..rest], of_rest);
+                *value -= dot(&cross[i * rest..][..rest], of_rest);
             }
-            backward(&self.blocks[start..start + size * size], size, part);
-            start += size * size;
+            backward(lower, block.size, part);
         }
     }
 
@@ -134,16 +191,19 @@ impl Factored {
     pub(super) fn inverse_diagonal(&self, layout: &Layout) -> Vec<f64> {
         let rest = layout.in_rest;
         let mut diagonal = vec![0.0; layout.size()];
-        let mut start = 0;
         let mut y = Vec::new();
-        for block in &layout.blocks {
+        for (number, block) in layout.blocks.iter().enumerate() {
             let size = block.size;
-            let lower = &self.blocks[start..start + size * size];
-            start += size * size;
+            if self.count[number] == 0 {
+                let first = layout.blocks[block.like].first;
+                diagonal.copy_within(first..first + size, block.first);
+                continue;
+            }
+            let (lower, cross) = self.block(layout, number);
             let own = inverse(lower, size);
             // With Y = B^-1 A the block's part of the inverse is B^-1 + Y S^-1 Y'.
             y.clear();
-            y.extend_from_slice(&self.cross[block.first * rest..(block.first + size) * rest]);
+            y.extend_from_slice(cross);
             to_inverse(lower, size, &mut y);
             for (i, row) in y.chunks_exact_mut(rest.max(1)).enumerate() {
                 forward(&self.rest, rest, row);
@@ -168,12 +228,10 @@ impl Factored {
         }
         let of_rest = inverse(&self.rest, rest);
         let mut between = vec![0.0; terms * terms];
-        let mut start = 0;
-        for block in &layout.blocks {
+        for (number, block) in layout.blocks.iter().enumerate() {
             let size = block.size;
-            let lower = &self.blocks[start..start + size * size];
-            start += size * size;
-            let mut y = self.cross[block.first * rest..(block.first + size) * rest].to_vec();
+            let (lower, cross) = self.block(layout, number);
+            let mut y = cross.to_vec();
             to_inverse(lower, size, &mut y);
             // Minus the inverse between block and rest, and the inverse within the block.
             let mut cross = vec![0.0; size * rest];
@@ -334,7 +392,7 @@ mod tests {
             }
         }
         let mut system = Factored::new(&layout);
-        assert!(system.factor(&layout, &scale, &weights));
+        assert!(system.factor(&layout, &scale, Weights::Own(&weights)));
         assert!((system.ln_det - dense.determinant().ln()).abs() < 1e-10);
         let right: Vec<f64> = (0..size).map(|_| random.normal()).collect();
         let mut solved = right.clone();
@@ -355,6 +413,47 @@ mod tests {
         assert_eq!(seen, rows);
         for (place, own) in system.inverse_diagonal(&layout).into_iter().enumerate() {
             assert!((own - whole[(place, place)]).abs() < 1e-11);
+        }
+    }
+
+    /// Where answers weigh alike, people who gave the same answers share their blocks; nothing else changes.
+    #[test]
+    fn blocks_that_are_alike_are_factored_once() {
+        let mut codes = [const { Vec::new() }; 4];
+        for person in 0..7_u32 {
+            // Two orders of the same clips, and two people who miss some.
+            for at in 0..12 {
+                let clip = if person % 2 == 0 { at } else { 11 - at };
+                let (segment, method) = (clip / 3, clip % 3);
+                if person < 2 && segment == person {
+                    continue;
+                }
+                let own = [person, person * 3 + method, segment, clip];
+                codes.iter_mut().zip(own).for_each(|(codes, own)| codes.push(own));
+            }
+        }
+        let rows = codes[0].len();
+        let factors = codes.map(|codes| {
+            let levels = (0..21).map(|level: u32| level.to_string()).collect();
+            Factor { name: String::new(), levels, codes }.used()
+        });
+        let layout = Layout::of(&factors.each_ref(), rows);
+        let like: Vec<usize> = layout.blocks.iter().map(|block| block.like).collect();
+        assert_eq!(like, [0, 1, 2, 2, 2, 2, 2]);
+        let scale = [0.7, 1.3, -0.4, 0.9];
+        let (mut each, mut once) = (Factored::new(&layout), Factored::of_equal_weights(&layout));
+        assert!(each.factor(&layout, &scale, Weights::Own(&vec![1.0; rows])));
+        assert!(once.factor(&layout, &scale, Weights::One));
+        assert!((each.ln_det - once.ln_det).abs() < 1e-12);
+        let mut random = Random::new(5);
+        let mut values: Vec<f64> = (0..layout.size()).map(|_| random.normal()).collect();
+        let mut same = values.clone();
+        each.solve(&layout, &mut values);
+        once.solve(&layout, &mut same);
+        let diagonals = [&each, &once].map(|own| own.inverse_diagonal(&layout));
+        for i in 0..layout.size() {
+            assert!((values[i] - same[i]).abs() < 1e-12);
+            assert!((diagonals[0][i] - diagonals[1][i]).abs() < 1e-12);
         }
     }
 

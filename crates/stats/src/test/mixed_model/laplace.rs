@@ -8,7 +8,7 @@
 
 use super::cumulative::Thresholds;
 use super::design::Layout;
-use super::effects::Factored;
+use super::effects::{Factored, Weights};
 use crate::numerics::dot;
 
 /// Newton's steps to the mode of the effects.
@@ -127,7 +127,9 @@ impl Objective<'_> {
         }
         let mut last = layout.terms.is_empty();
         for _ in 0..MODE_STEPS {
-            if !here.height.is_finite() || !self.system.factor(layout, own.sds, &here.second) {
+            if !here.height.is_finite()
+                || !self.system.factor(layout, own.sds, Weights::Own(&here.second))
+            {
                 return None;
             }
             if last {

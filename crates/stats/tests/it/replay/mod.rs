@@ -177,6 +177,7 @@ fn scripts(folder: &Path, but: &[&str]) -> (String, String, Vec<Expected>) {
 fn nearness(procedure: &str) -> f64 {
     match procedure {
         "mixed-model" => 2e-3,
+        "linear-mixed-model" => 5e-4,
         "thurstone" | "psychometric" | "difference-scaling" => 1e-5,
         _ => 1e-8,
     }
@@ -207,14 +208,20 @@ fn r_functions_find_the_rows_of_the_tests() {
     let name = "r_functions_find_the_rows_of_the_tests";
     let Some(rscript) = mimique_test_support::rscript(name) else { return };
     let folder = tempfile::tempdir().unwrap();
-    // The one function that takes a package.
-    let has_ordinal = ["-e", "quit(status = 1 - requireNamespace(\"ordinal\", quietly = TRUE))"];
-    let ordinal = Command::new(&rscript).args(has_ordinal).status().unwrap().success();
-    let but: &[&str] = if ordinal { &[] } else { &["mixed-model"] };
-    if !ordinal {
-        mimique_test_support::skip(name, "R has no package ordinal; install r-cran-ordinal");
+    // The functions that take packages.
+    let mut but = Vec::new();
+    for (function, package, debian) in [
+        ("mixed-model", "ordinal", "r-cran-ordinal"),
+        ("linear-mixed-model", "lmerTest", "r-cran-lmertest"),
+    ] {
+        let has = format!("quit(status = 1 - requireNamespace(\"{package}\", quietly = TRUE))");
+        if !Command::new(&rscript).args(["-e", &has]).status().unwrap().success() {
+            let why = format!("R has no package {package}; install {debian}");
+            mimique_test_support::skip(name, &why);
+            but.push(function);
+        }
     }
-    let (script, _, expected) = scripts(folder.path(), but);
+    let (script, _, expected) = scripts(folder.path(), &but);
     let path = folder.path().join("script.R");
     std::fs::write(&path, script).unwrap();
     compare(Command::new(rscript).arg(path).output().unwrap(), &expected);

@@ -8,7 +8,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::numerics::dot;
 use crate::test::mixed_model::design::Layout;
-use crate::test::mixed_model::effects::Factored;
+use crate::test::mixed_model::effects::{Factored, Weights};
 use crate::test::mixed_model::search::{Least, least};
 
 /// Standard deviations below this are 0: their gradient is a difference of equal numbers.
@@ -19,13 +19,13 @@ const START: f64 = 0.5;
 /// Responses and their columns, in the order in which the effects are solved.
 pub(super) struct Data {
     pub layout: Layout,
-    /// Fixed effects, the constant first: a column after the other, and the responses after the last.
-    columns: Vec<Vec<f64>>,
+    /// How many columns: fixed effects, the constant first, and the responses last.
+    columns: usize,
     /// Z' of each.
     sums: Vec<Vec<f64>>,
     /// Inner products of all columns.
     products: DMatrix<f64>,
-    weights: Vec<f64>,
+    rows: usize,
     /// The term (in the order of the layout) of each effect.
     terms: Vec<usize>,
 }
@@ -63,30 +63,29 @@ impl Data {
         });
         let sums = sums.collect();
         let products = DMatrix::from_fn(all.len(), all.len(), |i, j| dot(&all[i], &all[j]));
-        let weights = vec![1.0; response.len()];
         let mut terms = vec![0; layout.size()];
         for place in 0..response.len() {
             for (term, effect) in layout.effects(place).iter().enumerate() {
                 terms[*effect as usize] = term;
             }
         }
-        Self { layout, columns: all, sums, products, weights, terms }
+        Self { layout, columns: all.len(), sums, products, rows: response.len(), terms }
     }
 
     /// Columns of X.
     pub(super) fn fixed(&self) -> usize {
-        self.columns.len() - 1
+        self.columns - 1
     }
 
     /// Responses less columns.
     pub(super) fn residual_df(&self) -> usize {
-        self.weights.len() - self.fixed()
+        self.rows - self.fixed()
     }
 
     /// The parts of the likelihood; none where they cannot be computed.
     pub(super) fn solved(&self, sds: &[f64]) -> Option<Solved> {
-        let mut system = Factored::new(&self.layout);
-        if !system.factor(&self.layout, sds, &self.weights) {
+        let mut system = Factored::of_equal_weights(&self.layout);
+        if !system.factor(&self.layout, sds, Weights::One) {
             return None;
         }
         let scale: Vec<f64> = self.terms.iter().map(|term| sds[*term]).collect();
@@ -95,7 +94,7 @@ impl Data {
             .collect();
         let mut solved = scaled.clone();
         solved.iter_mut().for_each(|own| system.solve(&self.layout, own));
-        let size = self.columns.len();
+        let size = self.columns;
         let whole = DMatrix::from_fn(size, size, |i, j| {
             self.products[(i, j)] - dot(&scaled[i], &solved[j])
         });
