@@ -17,6 +17,7 @@ use crate::bench_partner::{Partner, number, text};
 use crate::bench_plot;
 use crate::bench_server;
 use crate::bench_stats;
+use crate::bench_verdicts;
 use crate::install;
 use crate::process::{cargo, output, root, say, show, target};
 use crate::web;
@@ -39,6 +40,12 @@ pub struct Args {
     /// Measure marker layouts beside scikit-learn and NumPy instead of the solver
     #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "annotate"])]
     layout: bool,
+    /// Count how often each kind of verdict finds a difference that is none
+    #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "annotate", "layout", "server"])]
+    verdicts: bool,
+    /// With --verdicts: simulated studies a row
+    #[arg(long, default_value_t = 2000, requires = "verdicts")]
+    runs: usize,
     /// Rounds; more are steadier
     #[arg(long, default_value_t = 5)]
     rounds: usize,
@@ -63,6 +70,9 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if args.annotate {
         return bench_annotate::run(args.rounds.max(1), args.record);
+    }
+    if args.verdicts {
+        return bench_verdicts::run(args.runs.max(1), args.record);
     }
     if args.layout {
         return bench_layout::run(args.rounds.max(1), args.record);

@@ -17,6 +17,7 @@ mod bench_peers;
 mod bench_plot;
 mod bench_server;
 mod bench_stats;
+mod bench_verdicts;
 mod budget;
 mod demo;
 mod install;
