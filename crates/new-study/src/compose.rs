@@ -1,7 +1,8 @@
 //! A study put together: what is wished, the parts of its design, its stimuli and instruments in; the study file as JSON
 //! and the comments of its parts out.
 
-use mimique_study::{SCHEMA_ADDRESS, json_schema};
+use mimique_study::{SCHEMA_ADDRESS, SEGMENTS_FOR_OTHER_CLIPS, TestName, json_schema};
+use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
 use crate::library::{Asked, Design, Instrument, LibraryError, Parts, base};
@@ -157,7 +158,8 @@ fn of_parts(
     study.insert("questions".to_owned(), json!(parts.questions));
     study.insert("components".to_owned(), json!(parts.components));
     study.insert("sequence".to_owned(), parts.sequence.clone());
-    study.insert("hypotheses".to_owned(), json!(hypotheses(parts, &methods)));
+    let segments = own.parts.get("segments").and_then(Value::as_array).map_or(0, Vec::len);
+    study.insert("hypotheses".to_owned(), json!(hypotheses(parts, &methods, segments)));
     let mut stimuli = own.parts.clone();
     stimuli.insert("methods".to_owned(), Value::Object(methods));
     stimuli.insert("look".to_owned(), look);
@@ -180,11 +182,14 @@ fn methods(parts: &Parts, wishes: &Wishes) -> Map<String, Value> {
     if wishes.methods.is_empty() { parts.methods.clone() } else { wishes.methods.clone() }
 }
 
-/// The hypotheses, each with the test that goes with so many methods; none about methods where there is one.
-fn hypotheses(parts: &Parts, methods: &Map<String, Value>) -> Vec<Value> {
-    // What the analysis calls a method: the name among its factors, else the method itself.
-    let word = |method| Value::pointer(method, "/factors/method").unwrap_or(&method["method"]);
-    let words: Vec<&Value> = methods.values().map(word).collect();
+/// The hypotheses, each with the test that goes with so many methods; none about methods where there is one. With few
+/// segments they are about these clips.
+fn hypotheses(parts: &Parts, methods: &Map<String, Value>, segments: usize) -> Vec<Value> {
+    // What the analysis calls a method: the name among its factors, else its name in the study file.
+    let word = |(name, method): (&String, &Value)| {
+        method.pointer("/factors/method").cloned().unwrap_or_else(|| json!(name))
+    };
+    let words: Vec<Value> = methods.iter().map(word).collect();
     let of_methods = parts.hypotheses.iter().filter(|_| words.len() > 1).cloned();
     let fitting = of_methods.map(|mut hypothesis| {
         let test = match (hypothesis["test"].as_str(), words.len()) {
@@ -199,6 +204,12 @@ fn hypotheses(parts: &Parts, methods: &Map<String, Value>) -> Vec<Value> {
             hypothesis["levels"] = json!(words);
         }
         hypothesis["test"] = json!(test);
+        let other_clips = TestName::deserialize(&hypothesis["test"]);
+        if segments < SEGMENTS_FOR_OTHER_CLIPS
+            && other_clips.is_ok_and(TestName::holds_for_other_clips)
+        {
+            hypothesis["generalise"] = json!("these clips");
+        }
         hypothesis
     });
     fitting.collect()

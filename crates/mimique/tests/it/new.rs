@@ -145,6 +145,8 @@ fn a_capture_of_ones_own_becomes_a_study_with_its_files() {
     let own = study(&other);
     assert_eq!(own["stimuli"]["captures"]["take"]["file"], at("take.c3d"));
     assert_eq!(own["hypotheses"][1]["test"], "friedman");
+    // Two cuts of one take tell nothing of other clips.
+    assert_eq!(own["hypotheses"][1]["generalise"], "these clips");
     let map = std::fs::read_to_string(other.join("stimuli/markers.json")).unwrap();
     assert!(map.contains("\"suggested\""), "{map}");
 

@@ -10,7 +10,7 @@ use super::values::{Count, Counted, Nearest};
 use super::{Subject, assigned, responses};
 use crate::columns::ASSIGNED_CONDITION;
 use crate::question::{KindOfQuestion as _, Question};
-use crate::study_file::{Generalise, Hypothesis, Measure, TestName};
+use crate::study_file::{Generalise, Hypothesis, Measure, SEGMENTS_FOR_OTHER_CLIPS, TestName};
 
 pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     let hypotheses = &subject.study.hypotheses;
@@ -31,9 +31,6 @@ pub(super) fn examine(subject: &Subject<'_>, issues: &mut Issues) {
     }
 }
 
-/// Segments that a mixed model needs: of fewer their spread is hardly estimated.
-const SEGMENTS: usize = 5;
-
 /// That a hypothesis about other clips has a test of them, and segments enough.
 fn generalise(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, issues: &mut Issues) {
     let place = below(pointer, "generalise");
@@ -47,12 +44,14 @@ fn generalise(subject: &Subject<'_>, hypothesis: &Hypothesis, pointer: &str, iss
     if !hypothesis.is_about_other_clips() || segments.is_empty() {
         return;
     }
-    if asked && segments.len() < SEGMENTS {
+    if asked && segments.len() < SEGMENTS_FOR_OTHER_CLIPS {
         let segments = Counted(segments.len(), "segment");
-        issues.error(&place, Problem::TooFewSegments { segments, needed: SEGMENTS });
-    } else if segments.len() < SEGMENTS {
+        issues
+            .error(&place, Problem::TooFewSegments { segments, needed: SEGMENTS_FOR_OTHER_CLIPS });
+    } else if segments.len() < SEGMENTS_FOR_OTHER_CLIPS {
         let (hypothesis, segments) = (hypothesis.id.clone(), Counted(segments.len(), "segment"));
-        let problem = Problem::FewSegments { hypothesis, segments, needed: SEGMENTS };
+        let problem =
+            Problem::FewSegments { hypothesis, segments, needed: SEGMENTS_FOR_OTHER_CLIPS };
         issues.warning(pointer, problem);
     } else if of_one_segment_each(subject, hypothesis) {
         let hypothesis = hypothesis.id.clone();

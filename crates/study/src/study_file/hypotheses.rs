@@ -80,6 +80,9 @@ pub enum TestName {
     Equivalence,
 }
 
+/// Segments that a verdict about other clips needs at least: of fewer nobody can tell how far others would differ.
+pub const SEGMENTS_FOR_OTHER_CLIPS: usize = 5;
+
 impl Hypothesis {
     /// Whether it is decided for other people and other clips alike, not for these clips.
     pub fn is_about_other_clips(&self) -> bool {

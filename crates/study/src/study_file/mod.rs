@@ -58,7 +58,9 @@ pub use exertion::{
 pub use general::{
     Consent, Contact, ContactPerson, Metadata, Published, Recruitment, RepeatPrevention, Section,
 };
-pub use hypotheses::{Exclusions, Generalise, Hypothesis, Measure, StraightLining, TestName};
+pub use hypotheses::{
+    Exclusions, Generalise, Hypothesis, Measure, SEGMENTS_FOR_OTHER_CLIPS, StraightLining, TestName,
+};
 pub use json_block::JsonBlock;
 pub use languages::{Multilingual, Translations};
 pub use local_text::LocalText;
