@@ -9,7 +9,7 @@ mod design;
 mod equivalence;
 mod faces;
 mod levels;
-mod pairs;
+pub(crate) mod pairs;
 mod panels;
 mod scaling;
 

@@ -18,13 +18,7 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language, naming:
         let within: Vec<String> = block.within.iter().map(|factor| naming.factor(factor)).collect();
         let (within, all) = (within.join(", "), trials.shown(&clips).len());
         let each = trials.trial_count(&clips);
-        let how = match block.show {
-            ClipShowing::InStep => language.pick("side by side, in step", "côte à côte, en phase"),
-            ClipShowing::InTurn => language.pick(
-                "side by side, the left one first, then the right one",
-                "côte à côte, celui de gauche d’abord, puis celui de droite",
-            ),
-        };
+        let how = shown(language, block.show);
         let dealt = match each == all {
             true => language.pick(
                 "Each participant is shown all of them.".to_owned(),
@@ -48,5 +42,16 @@ pub(super) fn design(text: &mut Text, study: &Study, language: Language, naming:
             format!("Comparaisons par paires `{name}` : les niveaux de {compared} ({levels}) sont montrés deux à deux pour les mêmes valeurs de {within}, {how}, {all} paires en tout. {dealt} Chaque niveau est à gauche dans la moitié des essais d’un participant, et chaque paire est montrée aussi souvent dans les deux ordres sur l’ensemble des participants."),
         ));
         text.line("");
+    }
+}
+
+/// How two clips are shown.
+pub(crate) fn shown(language: Language, how: ClipShowing) -> &'static str {
+    match how {
+        ClipShowing::InStep => language.pick("side by side, in step", "côte à côte, en phase"),
+        ClipShowing::InTurn => language.pick(
+            "side by side, the left one first, then the right one",
+            "côte à côte, celui de gauche d’abord, puis celui de droite",
+        ),
     }
 }

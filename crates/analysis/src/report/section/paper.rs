@@ -13,6 +13,7 @@ use crate::hypothesis::other_clips::{DecidingTest, OtherClips};
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::{HypothesisResult, deciding_test, reading};
 use crate::naming::people_counted;
+use crate::preregistration::pairs::shown;
 use crate::report::results::AboutPeople;
 use crate::report::section::Writer;
 use crate::trials::rule::Rule;
@@ -52,6 +53,7 @@ impl Writer<'_> {
         }];
         sentences.extend(self.about_people_in_paper());
         sentences.push(self.clips_in_paper());
+        sentences.extend(self.presentation_in_paper());
         sentences.extend(self.questions_in_paper());
         sentences.extend(self.tests_in_paper(hypotheses));
         let tested = hypotheses.iter().filter(|result| result.p.is_some()).count();
@@ -62,6 +64,31 @@ impl Writer<'_> {
             ));
         }
         sentences.join(" ")
+    }
+
+    /// How clips were shown where several stood on one page.
+    fn presentation_in_paper(&self) -> Vec<String> {
+        let language = self.language();
+        let mut sentences: Vec<String> = Vec::new();
+        let mut add = |sentence: String| {
+            if !sentences.contains(&sentence) {
+                sentences.push(sentence);
+            }
+        };
+        for (_, block) in self.study.pair_blocks() {
+            let how = shown(language, block.show);
+            add(language.pick(
+                format!("Clips were shown in pairs, {how}, and participants chose between them; the sides were dealt evenly."),
+                format!("Les extraits ont été montrés par paires, {how}, et les participants ont choisi entre eux ; les côtés ont été répartis également."),
+            ));
+        }
+        if self.study.panel_blocks().next().is_some() {
+            add(language.pick(
+                "All versions of a performance were rated together on one page, in an order drawn for each page.",
+                "Toutes les versions d’une interprétation ont été notées ensemble sur une page, dans un ordre tiré pour chaque page.",
+            ).to_owned());
+        }
+        sentences
     }
 
     /// By which tests the hypotheses were decided, a sentence each.
