@@ -3,7 +3,7 @@
 use mimique_stats::Labelled;
 use mimique_study::{Hypothesis, Study};
 
-use super::{HypothesisResult, Read, Scope, deciding_p, not_tested};
+use super::{ClipScope, HypothesisResult, Read, deciding_p, not_tested};
 use crate::choices::preference::preference;
 use crate::choices::{answers, reading, tested};
 use crate::hypothesis::not_tested::NotTested;
@@ -49,7 +49,7 @@ pub(super) fn of_choices(
         measure: hypothesis.response.clone(),
         kind: MeasureKind::Choice,
         factors: hypothesis.factors.clone(),
-        scope: Scope::TheseClips,
+        scope: ClipScope::These,
         as_in_the_thesis: TrialLevel::new(read.trials),
         p: deciding_p(&read.people),
         recommended: read.people,

@@ -8,7 +8,7 @@ use crate::choices::preference::Preference;
 use crate::hypothesis::is_two_way;
 use crate::hypothesis::other_clips::DecidingTest;
 use crate::hypothesis::reading::LEVEL;
-use crate::hypothesis::{HypothesisResult, Scope};
+use crate::hypothesis::{ClipScope, HypothesisResult};
 use crate::trials::measure::MeasureKind;
 
 /// More pairs of levels than this have no place in a row.
@@ -91,7 +91,7 @@ pub(crate) struct Effect<'r> {
 pub(crate) fn decision(result: &HypothesisResult) -> Decision {
     let Some(p) = result.p_holm_over_hypotheses.or(result.p) else {
         return match result.scope {
-            Scope::OtherClips => Decision::NotForOtherClips,
+            ClipScope::Others => Decision::NotForOtherClips,
             _ => Decision::NotTested,
         };
     };

@@ -48,7 +48,7 @@ pub(crate) struct HypothesisResult {
     pub kind: MeasureKind,
     pub factors: Vec<String>,
     /// Which clips the decision is about.
-    pub scope: Scope,
+    pub scope: ClipScope,
     pub as_in_the_thesis: TrialLevel,
     /// The same of the clips as they are, each person counting once.
     pub recommended: PersonLevel,
@@ -82,14 +82,16 @@ pub(crate) struct HypothesisResult {
 
 /// Which clips a decision is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Scope {
+pub(crate) enum ClipScope {
     /// Other people, and other clips of other segments.
-    OtherClips,
+    #[serde(rename = "other_clips")]
+    Others,
     /// Other people who see these clips.
-    TheseClips,
+    #[serde(rename = "these_clips")]
+    These,
     /// The answers are about no clips, or the export does not tell their segments.
-    NoClips,
+    #[serde(rename = "no_clips")]
+    NotTold,
 }
 
 /// Whether the trials of a measure show segments.
@@ -179,11 +181,11 @@ pub(crate) fn test_hypothesis(
         _ => deciding_p(&people),
     };
     let scope = match &other_clips {
-        Some(found) if found.decides => Scope::OtherClips,
+        Some(found) if found.decides => ClipScope::Others,
         _ if measure.as_ref().is_some_and(|measure| has_segments(export, measure)) => {
-            Scope::TheseClips
+            ClipScope::These
         }
-        _ => Scope::NoClips,
+        _ => ClipScope::NotTold,
     };
     let people_by_condition = measure.as_ref().map_or_else(Labelled::default, |measure| {
         conditions::people(export, study, hypothesis, measure)

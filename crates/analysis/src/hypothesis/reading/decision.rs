@@ -6,7 +6,7 @@ use super::verdict;
 use crate::hypothesis::decision::{
     Decision, Sought, Supports, deciding_p_values, decision as decided,
 };
-use crate::hypothesis::{HypothesisResult, Scope};
+use crate::hypothesis::{ClipScope, HypothesisResult};
 
 /// A shape that says the same as the words, without colour: filled where something was shown.
 pub(crate) fn mark(decision: Decision) -> &'static str {
@@ -69,7 +69,7 @@ pub(crate) fn decision_of(language: Language, result: &HypothesisResult) -> Stri
     let found = decided(result);
     let words = decision(language, found);
     match (result.scope, found) {
-        (Scope::TheseClips, found) if found != Decision::NotTested => {
+        (ClipScope::These, found) if found != Decision::NotTested => {
             format!("{words}{}", language.pick(", for these clips", ", pour ces extraits"))
         }
         _ => words.to_owned(),

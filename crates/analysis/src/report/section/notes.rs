@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use mimique_report::document::Block;
 
-use crate::hypothesis::{Scope, reading};
+use crate::hypothesis::{ClipScope, reading};
 use crate::report::section::Writer;
 
 impl Writer<'_> {
@@ -37,7 +37,7 @@ impl Writer<'_> {
             "Comme dans la thèse : Kruskal-Wallis, Wilcoxon (R de 2019 : zéros supprimés, exact seulement sous 50 différences sans ex æquo ni zéros, sinon normal avec correction de continuité), Scheirer-Ray-Hare (sommes de carrés de type I, corrigées des ex æquo) et khi-deux (correction de Yates pour deux par deux) sur les essais pris un à un.",
         );
         let for_others =
-            self.results.hypotheses.iter().any(|result| result.scope == Scope::OtherClips);
+            self.results.hypotheses.iter().any(|result| result.scope == ClipScope::Others);
         if self.one_clip_a_cell() && !for_others {
             self.blocks.push(Block::Caution(
                 language

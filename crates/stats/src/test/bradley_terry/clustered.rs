@@ -100,7 +100,7 @@ pub(crate) fn equal_worths(
 /// where all participants chose alike.
 pub(super) fn interval(estimate: f64, se: f64, participants: usize) -> Option<[f64; 2]> {
     let reach = t_quantile_upper(0.025, participants.checked_sub(1)? as f64) * se;
-    (reach > 0.0).then(|| [estimate - reach, estimate + reach])
+    (reach > 0.0).then_some([estimate - reach, estimate + reach])
 }
 
 /// All pairs of items.

@@ -278,7 +278,7 @@ impl Factored {
 
 /// Y = L^-T X = B^-1 A of a block, in place of X.
 fn to_inverse(lower: &[f64], size: usize, x: &mut [f64]) {
-    let rest = if size == 0 { 0 } else { x.len() / size };
+    let rest = x.len().checked_div(size).unwrap_or(0);
     for i in (0..size).rev() {
         let (here, after) = x.split_at_mut((i + 1) * rest);
         let row = &mut here[i * rest..];
