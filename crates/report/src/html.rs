@@ -284,10 +284,10 @@ figure svg{display:block;width:100%;max-width:100%;height:auto}
 .beside>p{margin:.6rem 0}
 .decisions{width:100%}
 .decisions th,.decisions td{padding:.38rem .6rem;line-height:1.35;vertical-align:middle}
-.decisions tbody th{min-width:15rem;font-weight:500}
+.decisions tbody th{min-width:11rem;font-weight:500}
 .decisions th.number{max-width:9rem}
-.decisions td:nth-child(2){min-width:9.5rem}
-@media (max-width:40rem){.decisions tbody th{min-width:10rem}}
+.decisions td:nth-child(2){min-width:8rem}
+@media (max-width:40rem){.decisions tbody th{min-width:9rem}}
 .decisions .effects{white-space:nowrap;font-size:.86rem}
 .decisions .effects div{height:22px;line-height:22px}
 .decisions .drawn{padding-left:0;padding-right:0}

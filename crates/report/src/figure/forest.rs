@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::svg::short;
 
 /// Width of the drawing; a line of the table is as high as a line of text in it.
-const WIDTH: f64 = 180.0;
+const WIDTH: f64 = 140.0;
 const LINE: f64 = 22.0;
 const MARGIN: f64 = 8.0;
 

@@ -101,8 +101,8 @@ impl Writer<'_> {
             let test = match (decides, deciding_test(&result.recommended)) {
                 (Some(own), _) => match own.deciding_test() {
                     Some(DecidingTest::LinearModel(_)) => language.pick(
-                        "a linear mixed model, fitted by restricted maximum likelihood with random effects of participants, of segments, of both at each level, and of participants for each segment, with Satterthwaite’s degrees of freedom",
-                        "un modèle linéaire mixte, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des segments, de chacun à chaque niveau, et des participants pour chaque segment, aux degrés de liberté de Satterthwaite",
+                        "linear mixed model, fitted by restricted maximum likelihood with random effects of participants, of segments, of both at each level, and of participants for each segment, with Satterthwaite’s degrees of freedom",
+                        "modèle linéaire mixte, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des segments, de chacun à chaque niveau, et des participants pour chaque segment, aux degrés de liberté de Satterthwaite",
                     )
                     .to_owned(),
                     Some(DecidingTest::MinF(line)) => test_in_methods(language, line),
@@ -119,22 +119,19 @@ impl Writer<'_> {
                 None => found.push((test, vec![&result.id])),
             }
         }
-        let mut sentences: Vec<String> = found
+        let tests: Vec<String> = found
             .into_iter()
             .map(|(test, ids)| {
-                let ids = listed(language, &ids);
-                language.pick(
-                    format!(
-                        "{ids} {} tested by {test}.",
-                        if ids.contains(' ') { "were" } else { "was" }
-                    ),
-                    format!(
-                        "{ids} {} par {test}.",
-                        if ids.contains(' ') { "ont été testées" } else { "a été testée" }
-                    ),
-                )
+                let colon = language.pick(":", " :");
+                format!("{}{colon} {test}", listed(language, &ids))
             })
             .collect();
+        let mut sentences = Vec::new();
+        if !tests.is_empty() {
+            let tests = tests.join(language.pick("; ", " ; "));
+            sentences
+                .push(language.pick(format!("Tests of {tests}."), format!("Tests de {tests}.")));
+        }
         if rank_estimates {
             let words = language.pick(
                 "Differences of these tests are Hodges-Lehmann estimates.",
@@ -365,7 +362,12 @@ fn test_in_paper(language: Language, line: &TestLine, p: Vec<String>) -> Vec<Str
     ];
     parts.extend(p);
     parts.extend(line.row.effect.map(|effect| {
-        let effect = without_zero(language, language.fixed(effect, 2), effect.abs() <= 1.0);
+        // Those that cannot exceed 1.
+        let is_bounded = matches!(
+            line.names.effect_symbol,
+            "r" | "W" | "V" | "rho" | "share" | "u" | "ε²" | "ηp²" | "η²H" | "ICC"
+        );
+        let effect = without_zero(language, language.fixed(effect, 2), is_bounded);
         format!("{} = {effect}", line.names.effect_symbol)
     }));
     parts
