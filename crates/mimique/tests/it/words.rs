@@ -28,6 +28,7 @@ const OF_OTHERS: [&str; 23] = [
     "--annotate",
     "--layout",
     "--server",
+    "--verdicts",
     "--study",
     "--runs",
     "--check",
