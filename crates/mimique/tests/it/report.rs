@@ -113,7 +113,11 @@ fn versions_that_were_served_are_read_from_the_folder_that_is_named() {
     assert!(written().contains("8 participants answered another version of this study"));
     assert!(written().contains("The file of that version is not known here"));
     ok(&[&analyze[..], &["--versions", &versions]].concat());
-    assert!(written().contains("rule lateFrameShare (served: 0.05; here: absent)"), "{}", written());
+    assert!(
+        written().contains("rule lateFrameShare (served: 0.05; here: absent)"),
+        "{}",
+        written()
+    );
     // A file among them that is no study is named, and nothing is written.
     let broken = Path::new(&versions).join("broken.json");
     std::fs::write(&broken, "{").unwrap();

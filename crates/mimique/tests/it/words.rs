@@ -9,7 +9,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use crate::support::ok;
 
 /// Options that are not ours, by who has them.
-const OF_OTHERS: [&str; 23] = [
+const OF_OTHERS: [&str; 24] = [
     // cargo and its tests
     "--release",
     "--test",
