@@ -72,7 +72,7 @@ mod tests {
     fn an_interval_beyond_no_difference_lies_on_one_side_of_its_line() {
         let interval = DrawnInterval { estimate: 0.5, ends: [0.25, 0.75], zone: None };
         let svg = forest_row(&[interval], "0.5 [0.25; 0.75]");
-        assert!(svg.contains(r#"x1="110.5""#) && svg.contains(r#"x2="151.5""#), "{svg}");
-        assert!(svg.contains(r#"<line x1="90" y1="0""#), "{svg}");
+        assert!(svg.contains(r#"x1="85.5""#) && svg.contains(r#"x2="116.5""#), "{svg}");
+        assert!(svg.contains(r#"<line x1="70" y1="0""#), "{svg}");
     }
 }
