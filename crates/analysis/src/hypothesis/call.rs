@@ -146,7 +146,10 @@ impl Call {
         self
     }
 
+    /// A number that a script does not compute, to twelve digits: where a maximum is searched the last ones differ between
+    /// the program and a browser's module.
     pub(crate) fn given(mut self, number: f64) -> Self {
+        let number = format!("{number:.11e}").parse().unwrap_or(number);
         self.arguments.push(Argument::Given(number));
         self
     }

@@ -64,7 +64,7 @@ fn intervals_hold_the_value_of_the_population_in_95_of_100_studies() {
             differences += usize::from((low..=high).contains(&truth));
             for contrast in &found.contrasts {
                 let [low, high] = contrast.preferred_interval.unwrap();
-                agree &= (contrast.p.unwrap() < 0.05) == !(low..=high).contains(&0.5);
+                agree &= (contrast.p.unwrap() < 0.05) != (low..=high).contains(&0.5);
             }
         }
         assert!(agree, "an interval leaves out one half where p < .05, and only there");
