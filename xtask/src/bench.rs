@@ -40,7 +40,7 @@ pub struct Args {
     /// Measure marker layouts beside scikit-learn and NumPy instead of the solver
     #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "annotate"])]
     layout: bool,
-    /// Count how often each kind of verdict finds a difference that is none
+    /// Count how often each kind of verdict finds a difference where there is none
     #[arg(long, conflicts_with_all = ["browser", "plot", "stats", "annotate", "layout", "server"])]
     verdicts: bool,
     /// With --verdicts: simulated studies a row

@@ -1,4 +1,4 @@
-//! `cargo xtask bench --verdicts`: how often each kind of verdict finds a difference that is none, with people and clips
+//! `cargo xtask bench --verdicts`: how often each kind of verdict finds a difference where there is none, with people and clips
 //! that differ more or less by chance, by the product's own `mimique power`.
 
 use std::collections::BTreeMap;

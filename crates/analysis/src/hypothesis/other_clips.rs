@@ -1,5 +1,5 @@
 //! Whether what is found holds for other people and other clips alike, people and clips both being drawn at random: a
-//! linear mixed model with effects of people and segments and of both with each level, and beside it, where levels are
+//! linear mixed model with effects of people and segments and of both with each level, and, where levels are
 //! compared within people, min F' and, of ratings, the cumulative model of their steps.
 
 use std::sync::Arc;
@@ -44,7 +44,7 @@ pub(crate) struct OtherClips {
     pub mixed_model: Option<Outcome<ClipModel, Why>>,
 }
 
-/// What is told of the linear mixed model.
+/// The estimates of the linear mixed model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct LinearClipModel {
     pub formula: String,
@@ -82,7 +82,7 @@ pub(crate) struct LinearClipPair {
     pub p_corrected: f64,
 }
 
-/// What is told of the cumulative mixed model.
+/// The estimates of the cumulative mixed model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ClipModel {
     pub formula: String,
@@ -177,8 +177,7 @@ impl Units {
     }
 }
 
-/// The tests of a measure by the levels of one factor or by two; `within` says of each factor whether it is one of the
-/// clips. None where trials have no segment.
+/// The tests of a measure by the levels of one factor or by two, each with whether it is a factor of the clips. None where trials have no segment.
 pub(crate) fn tested(
     export: &Export,
     measure: &Measure,

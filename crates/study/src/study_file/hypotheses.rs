@@ -80,7 +80,7 @@ pub enum TestName {
     Equivalence,
 }
 
-/// Segments that a verdict about other clips needs at least: of fewer nobody can tell how far others would differ.
+/// Segments that a verdict about other clips needs at least: fewer do not show how far other segments would differ.
 pub const SEGMENTS_FOR_OTHER_CLIPS: usize = 5;
 
 impl Hypothesis {

@@ -13,7 +13,7 @@ use crate::trials::measure::MeasureKind;
 /// Most pairs that a reading names.
 const PAIRS: usize = 3;
 
-/// Whether the difference holds for other clips, by the linear mixed model, with the other tests beside it.
+/// Whether the difference holds for other clips, by the linear mixed model, and by the other tests.
 pub(crate) fn other_clips(
     naming: &Naming<'_>,
     found: &OtherClips,
@@ -124,7 +124,7 @@ pub(crate) fn f_of(language: Language, model: &LinearClipModel) -> String {
     language.pick(format!("F({df}, {denominator}) = {f}"), format!("F({df} ; {denominator}) = {f}"))
 }
 
-/// The odds of a higher rating in the cumulative model; the level that stands higher is told of the other one.
+/// The odds of a higher rating in the cumulative model, of the level with the higher ratings.
 fn odds(naming: &Naming<'_>, model: &ClipModel, pair: &ClipPair, factor: &str) -> String {
     let language = naming.language;
     let (low, high, odds, [least, most], share) = if pair.odds_ratio >= 1.0 {

@@ -151,7 +151,7 @@ pub fn linear_mixed_model(
 }
 
 /// A grouping whose levels each have one level of the tested term, and which has no more levels than the term: where each
-/// emotion has one segment, nobody can tell emotion from segment.
+/// emotion has one segment, effects of emotion and segment cannot be separated.
 fn of_one_unit(
     factors: &[Factor],
     term: &FixedTerm,

@@ -121,8 +121,8 @@ impl Data {
         (found.squares > 0.0 && found.ln_dets.is_finite()).then_some(found)
     }
 
-    /// For each term, the trace of P Z Z' σ², the squares of Λ Z' P y, and the trace's part of each column: what slopes
-    /// by its standard deviation are made of. P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1.
+    /// For each term with the standard deviation σ, the trace of P Z Z' σ² and the sum of squares of Λ Z' P y: its slope is
+    /// made of these. P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1.
     fn traces(&self, solved: &Solved) -> Vec<[f64; 2]> {
         let terms = &self.terms;
         let mut found = vec![[0.0; 2]; self.layout.terms.len()];

@@ -194,7 +194,7 @@ fn what_cannot_be_told_is_undefined() {
     assert!(fit(&same, &[&method], &[&person]).unwrap().reason().is_some());
     let twice = fit(&y, &[&method, &method], &[&person]).unwrap();
     assert_eq!(twice.reason(), Some(&NoEstimate::Singular.into()));
-    // Each emotion with one segment: nobody can tell them apart.
+    // Each emotion with one segment: their effects cannot be separated.
     let one = fit(&y, &[&segment], &[&person, &segment]).unwrap();
     let grouping = "segment".to_owned();
     assert_eq!(one.reason(), Some(&NoEstimate::OneUnitPerLevel { grouping }.into()));
