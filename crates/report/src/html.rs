@@ -283,12 +283,12 @@ figure svg{display:block;width:100%;max-width:100%;height:auto}
 .beside{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(28rem,100%),1fr));gap:.5rem 2.5rem;align-items:start;margin:.6rem 0}
 .beside>p{margin:.6rem 0}
 .decisions{width:100%}
-.decisions th,.decisions td{padding:.38rem .6rem;line-height:1.35;vertical-align:middle}
+.decisions th,.decisions td{padding:.38rem .42rem;line-height:1.35;vertical-align:middle}
 .decisions tbody th{min-width:11rem;font-weight:500}
 .decisions th.number{max-width:9rem}
 .decisions td:nth-child(2){min-width:8rem}
 @media (max-width:40rem){.decisions tbody th{min-width:9rem}}
-.decisions .effects{white-space:nowrap;font-size:.86rem}
+.decisions .effects{white-space:nowrap;font-size:.83rem}
 .decisions .effects div{height:22px;line-height:22px}
 .decisions .drawn{padding-left:0;padding-right:0}
 .forest{display:block;min-width:180px}
