@@ -95,8 +95,9 @@ pub use test::lagged_correlation::{
 pub use test::mann_whitney::{MannWhitney, mann_whitney};
 pub use test::min_f::{MinFPrime, RepeatedMeasuresF, min_f_prime};
 pub use test::mixed_model::linear::{
-    LinearCoefficient, LinearEffect, LinearMean, LinearMixedModel, LinearMixedModelOptions,
-    LinearPair, linear_mixed_model,
+    ChosenOverOthers, LinearCoefficient, LinearComparisonModel, LinearEffect, LinearMean,
+    LinearMixedModel, LinearMixedModelOptions, LinearPair, linear_comparison_model,
+    linear_mixed_model,
 };
 pub use test::mixed_model::{
     MIXED_MODEL_CATEGORIES, MIXED_MODEL_LEVELS, MixedCoefficient, MixedEffectRatio,

@@ -83,7 +83,7 @@ pub(super) struct Layout {
     /// The answers in the order of the blocks, as places in the data.
     pub rows: Vec<usize>,
     pub blocks: Vec<Block>,
-    /// The random terms by their places in the model: the eliminated ones first.
+    /// The random terms by their places among the groupings: the eliminated ones first.
     pub terms: Vec<usize>,
     /// How many of the terms are eliminated.
     pub eliminated: usize,
@@ -97,7 +97,16 @@ pub(super) struct Layout {
 impl Layout {
     /// Of groupings that have an entry for each of the answers.
     pub(super) fn of(groupings: &[&Factor], rows: usize) -> Self {
-        let family = family(groupings);
+        Self::of_effects(groupings, &(0..groupings.len()).collect::<Vec<_>>(), rows)
+    }
+
+    /// Of groupings of which some have effects in common: `effects` has the same number for those, and they have the same
+    /// levels. So an answer about two items has the effects of both.
+    pub(super) fn of_effects(groupings: &[&Factor], effects: &[usize], rows: usize) -> Self {
+        let mut family = family(groupings);
+        // Groupings with effects in common stand on one side.
+        let apart: Vec<usize> = (0..groupings.len()).filter(|own| !family.contains(own)).collect();
+        family.retain(|own| !apart.iter().any(|other| effects[*other] == effects[*own]));
         let mut terms = family.clone();
         terms.extend((0..groupings.len()).filter(|term| !family.contains(term)));
         let eliminated = family.len();
@@ -120,7 +129,8 @@ impl Layout {
                 blocks.push(Block { rows: place..place, first: next, size: 0, like: blocks.len() });
             }
             for (position, term) in family.iter().enumerate() {
-                let own = known.entry((*term, groupings[*term].codes[row])).or_insert_with(|| {
+                let of = (effects[*term], groupings[*term].codes[row]);
+                let own = known.entry(of).or_insert_with(|| {
                     next += 1;
                     next as u32 - 1
                 });
@@ -132,11 +142,16 @@ impl Layout {
             }
         }
         let in_blocks = next;
+        let mut begins: HashMap<usize, usize> = HashMap::new();
         for (position, term) in terms.iter().enumerate().skip(eliminated) {
+            let first = *begins.entry(effects[*term]).or_insert_with(|| {
+                let first = next;
+                next += groupings[*term].levels.len();
+                first
+            });
             for (place, &row) in order.iter().enumerate() {
-                effect[place * terms.len() + position] = next as u32 + groupings[*term].codes[row];
+                effect[place * terms.len() + position] = first as u32 + groupings[*term].codes[row];
             }
-            next += groupings[*term].levels.len();
         }
         alike(&mut blocks, &effect, terms.len(), eliminated);
         Self {

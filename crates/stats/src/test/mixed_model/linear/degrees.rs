@@ -13,7 +13,7 @@ const DIFFERENCE: f64 = 1e-4;
 pub(super) struct Satterthwaite<'d> {
     data: &'d Data,
     solved: &'d Solved,
-    /// Terms whose standard deviation is not 0: the others are left out as the search leaves them out.
+    /// Standard deviations that are not 0: the others are left out as the search leaves them out.
     free: Vec<usize>,
     /// Covariance of these deviations and of the logarithm of the residual variance, last.
     covariance: DMatrix<f64>,
@@ -59,7 +59,7 @@ impl<'d> Satterthwaite<'d> {
     pub(super) fn of(&self, contrast: &DVector<f64>) -> (f64, f64) {
         let weights = self.solved.information.solve(contrast);
         let variance = self.variance * contrast.dot(&weights);
-        let squares = self.data.squares_by_term(self.solved, &weights);
+        let squares = self.data.squares_by_deviation(self.solved, &weights);
         // By each deviation: 2/σ times the squares, in units of the residual variance.
         let slopes =
             self.free.iter().map(|term| 2.0 * self.variance * squares[*term] / self.sds[*term]);

@@ -4,6 +4,7 @@
 //!
 //! For people and stimuli both drawn at random see Baayen, Davidson and Bates 2008 and Judd, Westfall and Kenny 2012.
 
+mod comparisons;
 mod degrees;
 mod procedure;
 mod reml;
@@ -13,7 +14,7 @@ mod tests;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::design::{Fixed, FixedTerm, Layout, is_part};
+use super::design::{Fixed, FixedTerm, is_part};
 use super::search::GRADIENT;
 use super::{apart, determined, formula, terms};
 use crate::adjust::Adjustment;
@@ -24,9 +25,10 @@ use crate::table::Numbers;
 use crate::table::factor::Factor;
 use crate::table::sample::complete_rows;
 use crate::undefined::{NoEstimate, Undefined};
+pub use comparisons::{ChosenOverOthers, LinearComparisonModel, linear_comparison_model};
 use degrees::Satterthwaite;
 pub(crate) use procedure::PROCEDURE;
-use reml::Data;
+use reml::{Data, RandomTerm};
 pub use result::{LinearCoefficient, LinearEffect, LinearMean, LinearMixedModel, LinearPair};
 
 /// What is fitted.
@@ -86,7 +88,10 @@ pub fn linear_mixed_model(
     }
     // In units of their spread, so that the search does not depend on the unit.
     let standard: Vec<f64> = values.iter().map(|y| (y - mean) / spread).collect();
-    let data = Data::new(Layout::of(&kept, n), &fixed.values, columns, &standard);
+    let random: Vec<RandomTerm<'_>> = (kept.iter().enumerate())
+        .map(|(deviation, grouping)| RandomTerm { grouping, deviation, sign: 1.0 })
+        .collect();
+    let data = Data::new(&random, &fixed.values, columns, &standard);
     let least = data.fit();
     if least.gradient.is_nan() || least.gradient >= GRADIENT {
         return Ok(Outcome::undefined(NoEstimate::NotConverged { gradient: least.gradient }));
@@ -122,10 +127,7 @@ pub fn linear_mixed_model(
         _ => (Labelled(Vec::new()), Vec::new()),
     };
     let residual_sd = spread * (solved.squares / data.residual_df() as f64).sqrt();
-    let mut sds = vec![0.0; kept.len()];
-    for (term, sd) in data.layout.terms.iter().zip(&least.at) {
-        sds[*term] = sd.abs();
-    }
+    let sds: Vec<f64> = least.at.iter().map(|sd| sd.abs()).collect();
     let at_zero = kept.iter().zip(&sds).filter(|(_, sd)| **sd == 0.0);
     let at_zero = at_zero.map(|(grouping, _)| grouping.name.clone()).collect();
     let kept_names: Vec<String> = kept.iter().map(|grouping| grouping.name.clone()).collect();
@@ -222,6 +224,11 @@ fn pairs(factor: &Factor, estimate: &Estimate<'_>) -> Vec<LinearPair> {
             });
         }
     }
+    corrected(pairs)
+}
+
+/// With Holm's correction over the pairs.
+fn corrected(mut pairs: Vec<LinearPair>) -> Vec<LinearPair> {
     let p: Vec<Option<f64>> = pairs.iter().map(|pair| Some(pair.p)).collect();
     for (pair, corrected) in pairs.iter_mut().zip(Adjustment::Holm.apply(&p)) {
         pair.p_holm = corrected.unwrap_or(pair.p);

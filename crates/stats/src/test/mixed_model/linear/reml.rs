@@ -7,6 +7,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::numerics::dot;
+use crate::table::factor::Factor;
 use crate::test::mixed_model::design::Layout;
 use crate::test::mixed_model::effects::{Factored, Weights};
 use crate::test::mixed_model::search::{Least, least};
@@ -18,7 +19,7 @@ const START: f64 = 0.5;
 
 /// Responses and their columns, in the order in which the effects are solved.
 pub(super) struct Data {
-    pub layout: Layout,
+    layout: Layout,
     /// How many columns: fixed effects, the constant first, and the responses last.
     columns: usize,
     /// Z' of each.
@@ -26,8 +27,12 @@ pub(super) struct Data {
     /// Inner products of all columns.
     products: DMatrix<f64>,
     rows: usize,
-    /// The term (in the order of the layout) of each effect.
-    terms: Vec<usize>,
+    /// The standard deviation and the sign of each term, in the order of the layout.
+    slots: Vec<(usize, f64)>,
+    /// How many standard deviations there are.
+    deviations: usize,
+    /// The standard deviation of each effect.
+    deviation_of: Vec<usize>,
 }
 
 /// What the likelihood is made of at some standard deviations.
@@ -45,31 +50,53 @@ pub(super) struct Solved {
     system: Factored,
 }
 
+/// A grouping of the answers with its random effects.
+pub(super) struct RandomTerm<'g> {
+    pub grouping: &'g Factor,
+    /// Which standard deviation the effects have; groupings of the same one have effects in common.
+    pub deviation: usize,
+    /// What an effect adds to an answer: 1, or -1 of the second of two items.
+    pub sign: f64,
+}
+
 impl Data {
     /// Of rows x columns of fixed effects (without the constant) and responses, in the order of the data.
-    pub(super) fn new(layout: Layout, fixed: &[f64], columns: usize, response: &[f64]) -> Self {
+    pub(super) fn new(
+        random: &[RandomTerm<'_>],
+        fixed: &[f64],
+        columns: usize,
+        response: &[f64],
+    ) -> Self {
+        let groupings: Vec<&Factor> = random.iter().map(|term| term.grouping).collect();
+        let deviations: Vec<usize> = random.iter().map(|term| term.deviation).collect();
+        let layout = Layout::of_effects(&groupings, &deviations, response.len());
         let of = |value: &dyn Fn(usize) -> f64| layout.rows.iter().map(|row| value(*row)).collect();
         let mut all: Vec<Vec<f64>> = vec![vec![1.0; response.len()]];
         all.extend((0..columns).map(|column| of(&|row| fixed[row * columns + column])));
         all.push(of(&|row| response[row]));
-        let sums = all.iter().map(|column| {
-            let mut sums = vec![0.0; layout.size()];
-            for (place, value) in column.iter().enumerate() {
-                for effect in layout.effects(place) {
-                    sums[*effect as usize] += value;
+        let slots: Vec<(usize, f64)> =
+            layout.terms.iter().map(|term| (random[*term].deviation, random[*term].sign)).collect();
+        let mut deviation_of = vec![0; layout.size()];
+        let mut sums = vec![vec![0.0; layout.size()]; all.len()];
+        for place in 0..response.len() {
+            for (effect, (deviation, sign)) in layout.effects(place).iter().zip(&slots) {
+                deviation_of[*effect as usize] = *deviation;
+                for (sums, column) in sums.iter_mut().zip(&all) {
+                    sums[*effect as usize] += sign * column[place];
                 }
             }
-            sums
-        });
-        let sums = sums.collect();
-        let products = DMatrix::from_fn(all.len(), all.len(), |i, j| dot(&all[i], &all[j]));
-        let mut terms = vec![0; layout.size()];
-        for place in 0..response.len() {
-            for (term, effect) in layout.effects(place).iter().enumerate() {
-                terms[*effect as usize] = term;
-            }
         }
-        Self { layout, columns: all.len(), sums, products, rows: response.len(), terms }
+        let products = DMatrix::from_fn(all.len(), all.len(), |i, j| dot(&all[i], &all[j]));
+        Self {
+            layout,
+            columns: all.len(),
+            sums,
+            products,
+            rows: response.len(),
+            slots,
+            deviations: deviations.iter().max().map_or(0, |most| most + 1),
+            deviation_of,
+        }
     }
 
     /// Columns of X.
@@ -85,10 +112,12 @@ impl Data {
     /// The parts of the likelihood; none where they cannot be computed.
     pub(super) fn solved(&self, sds: &[f64]) -> Option<Solved> {
         let mut system = Factored::of_equal_weights(&self.layout);
-        if !system.factor(&self.layout, sds, Weights::One) {
+        let by_slot: Vec<f64> =
+            self.slots.iter().map(|(deviation, sign)| sign * sds[*deviation]).collect();
+        if !system.factor(&self.layout, &by_slot, Weights::One) {
             return None;
         }
-        let scale: Vec<f64> = self.terms.iter().map(|term| sds[*term]).collect();
+        let scale: Vec<f64> = self.deviation_of.iter().map(|own| sds[*own]).collect();
         let scaled: Vec<Vec<f64>> = (self.sums.iter())
             .map(|sums| sums.iter().zip(&scale).map(|(sum, sd)| sum * sd).collect())
             .collect();
@@ -121,11 +150,11 @@ impl Data {
         (found.squares > 0.0 && found.ln_dets.is_finite()).then_some(found)
     }
 
-    /// For each term with the standard deviation σ, the trace of P Z Z' σ² and the sum of squares of Λ Z' P y: its slope is
-    /// made of these. P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1.
+    /// For each standard deviation σ, the trace of P Z Z' σ² and the sum of squares of Λ Z' P y: its slope is made of these.
+    /// P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1.
     fn traces(&self, solved: &Solved) -> Vec<[f64; 2]> {
-        let terms = &self.terms;
-        let mut found = vec![[0.0; 2]; self.layout.terms.len()];
+        let terms = &self.deviation_of;
+        let mut found = vec![[0.0; 2]; self.deviations];
         let diagonal = solved.system.inverse_diagonal(&self.layout);
         for (effect, term) in terms.iter().enumerate() {
             found[*term][0] += 1.0 - diagonal[effect];
@@ -166,10 +195,10 @@ impl Data {
         traces.iter().zip(sds).map(slope).collect()
     }
 
-    /// Sums of squares by term of Λ Z' V^-1 X w for weights w of the coefficients.
-    pub(super) fn squares_by_term(&self, solved: &Solved, weights: &DVector<f64>) -> Vec<f64> {
-        let mut found = vec![0.0; self.layout.terms.len()];
-        for (effect, term) in self.terms.iter().enumerate() {
+    /// Sums of squares by standard deviation of Λ Z' V^-1 X w for weights w of the coefficients.
+    pub(super) fn squares_by_deviation(&self, solved: &Solved, weights: &DVector<f64>) -> Vec<f64> {
+        let mut found = vec![0.0; self.deviations];
+        for (effect, term) in self.deviation_of.iter().enumerate() {
             let own = solved.of_columns.iter().zip(weights);
             let own: f64 = own.map(|(column, weight)| weight * column[effect]).sum();
             found[*term] += own * own;
@@ -179,7 +208,7 @@ impl Data {
 
     /// Where the restricted likelihood is highest.
     pub(super) fn fit(&self) -> Least {
-        let start = vec![START; self.layout.terms.len()];
+        let start = vec![START; self.deviations];
         least(start, 0, |sds, gradient| self.value(sds, gradient))
     }
 
