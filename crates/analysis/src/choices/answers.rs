@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mimique_stats::{Chosen, Compared, Numbers, PairedComparisons};
+use mimique_stats::{Chosen, Compared, Factor, Numbers, PairedComparisons};
 
 use crate::trials::export::{Answer, Export};
 
@@ -21,9 +21,21 @@ pub(crate) fn by_factor(
     order: &[String],
     levels: &[String],
 ) -> Option<PairedComparisons> {
+    with_segments(export, question, factor, order, levels).map(|(choices, _)| choices)
+}
+
+/// The same with the segment of each answer; a segment that is not told is missing.
+pub(crate) fn with_segments(
+    export: &Export,
+    question: &str,
+    factor: &str,
+    order: &[String],
+    levels: &[String],
+) -> Option<(PairedComparisons, Factor)> {
     let place = export.factors.iter().position(|name| name == factor)?;
     let is_compared = |level: &str| levels.is_empty() || levels.iter().any(|own| own == level);
     let mut rows = Vec::new();
+    let mut segments: Vec<Option<&str>> = Vec::new();
     for answer in export.answers_to(question) {
         let trial = &export.trials[answer.trial];
         let Some(beside) = &trial.beside else { continue };
@@ -34,6 +46,7 @@ pub(crate) fn by_factor(
         }
         let [left, right] = if beside.left { [other, own] } else { [own, other] };
         rows.push((answer.person, left, right, chosen));
+        segments.push(trial.segment.as_deref());
     }
     let wanted = if levels.is_empty() { order } else { levels };
     let rank = |level: &str| {
@@ -57,12 +70,13 @@ pub(crate) fn by_factor(
         right: item(right),
         chosen: *chosen,
     });
-    Some(PairedComparisons {
+    let choices = PairedComparisons {
         answers: answers.collect(),
         participants: people.keys().map(|person| export.people[*person].id.clone()).collect(),
         items: items.iter().map(|level| (*level).to_owned()).collect(),
         dropped: 0,
-    })
+    };
+    Some((choices, Factor::from_cells("segment", segments.into_iter(), |_| None)))
 }
 
 /// Of two items, 1 for each answer that chooses the first, -1 for the second, 0 for neither.

@@ -3,10 +3,12 @@
 use mimique_stats::Labelled;
 use mimique_study::{Hypothesis, Study};
 
-use super::{ClipScope, HypothesisResult, Read, deciding_p, not_tested};
+use super::{ClipScope, HypothesisResult, Read, deciding_p, not_tested, with_words};
 use crate::choices::preference::preference;
 use crate::choices::{answers, reading, tested};
 use crate::hypothesis::not_tested::NotTested;
+use crate::hypothesis::other_clips::{self, OtherClipsTests};
+use crate::hypothesis::reading::other_clips as words_of_clips;
 use crate::hypothesis::trial_level::TrialLevel;
 use crate::naming::Naming;
 use crate::trials::export::Export;
@@ -18,6 +20,7 @@ pub(super) fn of_choices(
     export: &Export,
     study: &Study,
     hypothesis: &Hypothesis,
+    clips: OtherClipsTests,
 ) -> HypothesisResult {
     let language = naming.language;
     let asked = study.questions.iter().find(|question| question.id == hypothesis.response);
@@ -27,17 +30,24 @@ pub(super) fn of_choices(
     let factor = hypothesis.factors.first().map_or("", String::as_str);
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let order = naming.level_order(factor);
-    let mut preferred = None;
-    let read = match answers::by_factor(export, &hypothesis.response, factor, &order, &levels) {
+    let (mut preferred, mut other_clips) = (None, None);
+    let read = match answers::with_segments(export, &hypothesis.response, factor, &order, &levels) {
         None if export.answers_to(&hypothesis.response).is_empty() => {
             let response = hypothesis.response.clone();
             not_tested(language, &NotTested::NoAnswers { response })
         }
         None => not_tested(language, &NotTested::TooFewLevels { factor: factor.to_owned() }),
-        Some(data) => {
+        Some((data, segment)) => {
             let found = tested::tested(&hypothesis.response, factor, &data, 0);
-            let reading = reading::choices(naming, &found, factor, label);
+            let mut reading = reading::choices(naming, &found, factor, label);
             preferred = preference(&found);
+            let decides = hypothesis.is_about_other_clips();
+            other_clips = other_clips::of_choices(&data, &segment, decides, clips);
+            if let Some(found) = &other_clips {
+                let factors = &hypothesis.factors[..1];
+                let words = words_of_clips(naming, found, MeasureKind::Choice, factors);
+                reading = with_words(language, &words, &reading, found.decides);
+            }
             let tests = found.as_in_the_thesis.tests;
             Read { trials: tests, people: found.recommended, equivalence: None, reading }
         }
@@ -49,11 +59,17 @@ pub(super) fn of_choices(
         measure: hypothesis.response.clone(),
         kind: MeasureKind::Choice,
         factors: hypothesis.factors.clone(),
-        scope: ClipScope::These,
+        scope: match &other_clips {
+            Some(found) if found.decides => ClipScope::Others,
+            _ => ClipScope::These,
+        },
         as_in_the_thesis: TrialLevel::new(read.trials),
-        p: deciding_p(&read.people),
+        p: match &other_clips {
+            Some(found) if found.decides => found.p(),
+            _ => deciding_p(&read.people),
+        },
         recommended: read.people,
-        other_clips: None,
+        other_clips,
         equivalence: None,
         preference: preferred,
         matching: None,

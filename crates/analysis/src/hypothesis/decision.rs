@@ -6,7 +6,7 @@ use mimique_study::TestName;
 
 use crate::choices::preference::Preference;
 use crate::hypothesis::is_two_way;
-use crate::hypothesis::other_clips::DecidingTest;
+use crate::hypothesis::other_clips::{DecidingTest, LinearClipModel};
 use crate::hypothesis::reading::LEVEL;
 use crate::hypothesis::{ClipScope, HypothesisResult};
 use crate::trials::measure::MeasureKind;
@@ -49,8 +49,10 @@ pub(crate) enum EffectUnit {
     Shares,
     /// Seconds.
     Seconds,
-    /// Shares of choices.
+    /// Shares of choices between two levels.
     Chosen,
+    /// Shares of choices between a level and the average of the others.
+    ChosenOverOthers,
     /// Just noticeable differences from the mean of all levels.
     Worth,
 }
@@ -59,7 +61,7 @@ impl EffectUnit {
     /// How far a value lies from no difference, on the scale on which intervals are drawn.
     pub(crate) fn drawn(self, value: f64) -> f64 {
         match self {
-            Self::Chosen => value - 0.5,
+            Self::Chosen | Self::ChosenOverOthers => value - 0.5,
             Self::Points | Self::Shares | Self::Seconds | Self::Worth => value,
         }
     }
@@ -160,14 +162,14 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         });
         return effect.into_iter().collect();
     }
-    if let Some(preferred) = &result.preference {
-        return of_choices(preferred);
-    }
     let decides = result.other_clips.as_ref().filter(|found| found.decides);
     if let Some(found) = decides {
         let Some(DecidingTest::LinearModel(model)) = found.deciding_test() else {
             return Vec::new();
         };
+        if result.kind == MeasureKind::Choice {
+            return of_chosen(model);
+        }
         let few = model.pairs.iter().filter(|_| model.pairs.len() <= MOST_PAIRS);
         return few
             .map(|pair| Effect {
@@ -179,6 +181,9 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
                 smallest: None,
             })
             .collect();
+    }
+    if let Some(preferred) = &result.preference {
+        return of_choices(preferred);
     }
     let pairs = &result.recommended.pairs;
     let few = pairs.iter().filter(|_| pairs.len() <= MOST_PAIRS);
@@ -194,6 +199,38 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         })
     })
     .collect()
+}
+
+/// By the linear model of choices: how often each level is chosen over the others, the most chosen first, or how often the
+/// more chosen of two levels is.
+fn of_chosen(model: &LinearClipModel) -> Vec<Effect<'_>> {
+    if let [pair] = model.pairs.as_slice() {
+        let [low, high] = pair.interval_95;
+        let (of, estimate, interval) = match pair.difference >= 0.0 {
+            true => ([&*pair.a, &*pair.b], pair.difference, [low, high]),
+            false => ([&*pair.b, &*pair.a], -pair.difference, [-high, -low]),
+        };
+        return vec![Effect {
+            of: EffectOf::Difference(of),
+            estimate: 0.5 + estimate,
+            interval: interval.map(|end| 0.5 + end),
+            covers: 95,
+            unit: EffectUnit::Chosen,
+            smallest: None,
+        }];
+    }
+    let mut effects: Vec<Effect<'_>> = (model.means.iter())
+        .map(|(level, own)| Effect {
+            of: EffectOf::Level(level),
+            estimate: own.mean,
+            interval: own.interval_95,
+            covers: 95,
+            unit: EffectUnit::ChosenOverOthers,
+            smallest: None,
+        })
+        .collect();
+    effects.sort_by(|a, b| b.estimate.total_cmp(&a.estimate));
+    effects
 }
 
 /// The ranking, or how often the more chosen of two levels is chosen.

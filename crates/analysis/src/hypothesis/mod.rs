@@ -120,7 +120,7 @@ pub(crate) fn test_hypothesis(
 ) -> HypothesisResult {
     let language = naming.language;
     if hypothesis.test.is_of_choices() {
-        return choices::of_choices(naming, export, study, hypothesis);
+        return choices::of_choices(naming, export, study, hypothesis, clips);
     }
     let measure = measure_of(export, study, hypothesis, language);
     let trials_without_level = measure.as_ref().map_or(0, |measure| {
@@ -163,18 +163,10 @@ pub(crate) fn test_hypothesis(
     let other_clips =
         measure.as_ref().and_then(|measure| of_clips(export, study, hypothesis, measure, clips));
     if let Some(found) = &other_clips {
-        if found.decides {
-            let words = language.pick("Of these clips alone:", "Pour ces extraits seuls :");
-            reading = format!("{words} {reading}");
-        }
         let tested = if is_two_way(hypothesis.test) { 2 } else { 1 };
         let factors = &hypothesis.factors[..hypothesis.factors.len().min(tested)];
         let words = reading::other_clips(naming, found, kind, factors);
-        // What decides comes first.
-        reading = match found.decides {
-            true => format!("{words} {reading}"),
-            false => format!("{reading} {words}"),
-        };
+        reading = with_words(language, &words, &reading, found.decides);
     }
     let decided = match &other_clips {
         Some(found) if found.decides => found.p(),
@@ -212,6 +204,15 @@ pub(crate) fn test_hypothesis(
         preference: None,
         reading,
     }
+}
+
+/// What is said of these clips with what is said of others; what decides comes first.
+fn with_words(language: Language, of_others: &str, of_these: &str, others_decide: bool) -> String {
+    if !others_decide {
+        return format!("{of_these} {of_others}");
+    }
+    let these = language.pick("Of these clips alone:", "Pour ces extraits seuls :");
+    format!("{of_others} {these} {of_these}")
 }
 
 /// What the tests of equivalence say.

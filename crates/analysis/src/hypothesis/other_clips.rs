@@ -5,9 +5,9 @@
 use std::sync::Arc;
 
 use mimique_stats::{
-    Factor, Labelled, LinearMean, LinearMixedModel, LinearMixedModelOptions, MinFPrime, MixedModel,
-    MixedModelOptions, MixedShares, Outcome, TestResult, linear_mixed_model, min_f_prime,
-    mixed_model,
+    Factor, Labelled, LinearComparisonModel, LinearMean, LinearMixedModel, LinearMixedModelOptions,
+    LinearPair, MinFPrime, MixedModel, MixedModelOptions, MixedShares, Outcome, PairedComparisons,
+    TestResult, linear_comparison_model, linear_mixed_model, min_f_prime, mixed_model,
 };
 use serde::Serialize;
 
@@ -56,7 +56,7 @@ pub(crate) struct LinearClipModel {
     pub df_denominator: f64,
     pub p: f64,
     pub ln_p: f64,
-    /// Of each level of the one factor.
+    /// Of each level of the one factor; of choices, how often it is chosen over the others.
     pub means: Labelled<LinearMean>,
     /// Every two levels of the one factor.
     pub pairs: Vec<LinearClipPair>,
@@ -74,7 +74,7 @@ pub(crate) struct LinearClipModel {
 pub(crate) struct LinearClipPair {
     pub a: String,
     pub b: String,
-    /// a less b.
+    /// a less b; of choices, how far the share of choices of a over b is above 1/2.
     pub difference: f64,
     pub interval_95: [f64; 2],
     pub df: f64,
@@ -200,6 +200,62 @@ pub(crate) fn tested(
     Some(OtherClips { decides, levels: first.levels.clone(), linear_model, min_f, mixed_model })
 }
 
+/// The test of choices between the levels of a factor, each with its segment. None where answers have no segment.
+pub(crate) fn of_choices(
+    data: &PairedComparisons,
+    segment: &Factor,
+    decides: bool,
+    tests: OtherClipsTests,
+) -> Option<OtherClips> {
+    if segment.levels.is_empty() || segment.codes.contains(&Factor::MISSING) {
+        return None;
+    }
+    let asked = decides || tests == OtherClipsTests::All;
+    let linear_model = asked.then(|| match linear_comparison_model(data, segment) {
+        Err(refusal) => Outcome::undefined(refusal),
+        Ok(outcome) => outcome.map(comparisons_told).map_reason(Why::from),
+    });
+    let levels = data.items.clone();
+    Some(OtherClips { decides, levels, linear_model, min_f: None, mixed_model: None })
+}
+
+fn comparisons_told(found: LinearComparisonModel) -> LinearClipModel {
+    let means = found.items.iter().map(|(level, own)| {
+        let mean = own.share;
+        let own = LinearMean { mean, se: own.se, df: own.df, interval_95: own.interval_95 };
+        (level.to_owned(), own)
+    });
+    LinearClipModel {
+        formula: "choice ~ left + item + (1 | participant) + (1 | participant:item) + (1 | segment:item)"
+            .to_owned(),
+        observations: found.answers,
+        f: found.effect.f,
+        df: found.effect.df,
+        df_denominator: found.effect.df_denominator,
+        p: found.effect.p,
+        ln_p: found.effect.ln_p,
+        means: Labelled(means.collect()),
+        pairs: found.pairs.into_iter().map(linear_pair).collect(),
+        sd: found.sd,
+        residual_sd: found.residual_sd,
+        at_zero: found.at_zero,
+        left_out: Vec::new(),
+    }
+}
+
+/// As pairs are told elsewhere, the first level less the second.
+fn linear_pair(pair: LinearPair) -> LinearClipPair {
+    let [low, high] = pair.interval_95;
+    LinearClipPair {
+        a: pair.a,
+        b: pair.b,
+        difference: -pair.difference,
+        interval_95: [-high, -low],
+        df: pair.df,
+        p_corrected: pair.p_holm,
+    }
+}
+
 /// The linear model of all answers, with effects of people and segments, of both with each level, and of people with
 /// segments. It contains what differs between segments, so that they need not be matched.
 fn linear(
@@ -229,17 +285,6 @@ fn linear(
 }
 
 fn linear_told(found: LinearMixedModel) -> LinearClipModel {
-    let pair = |pair: mimique_stats::LinearPair| {
-        let [low, high] = pair.interval_95;
-        LinearClipPair {
-            a: pair.a,
-            b: pair.b,
-            difference: -pair.difference,
-            interval_95: [-high, -low],
-            df: pair.df,
-            p_corrected: pair.p_holm,
-        }
-    };
     LinearClipModel {
         formula: found.formula,
         observations: found.observations,
@@ -249,7 +294,7 @@ fn linear_told(found: LinearMixedModel) -> LinearClipModel {
         p: found.effect.p,
         ln_p: found.effect.ln_p,
         means: found.means,
-        pairs: found.pairs.into_iter().map(pair).collect(),
+        pairs: found.pairs.into_iter().map(linear_pair).collect(),
         sd: found.sd,
         residual_sd: found.residual_sd,
         at_zero: found.at_zero,

@@ -33,6 +33,7 @@ fn three_methods() -> Value {
     file["sequence"] = json!({ "order": "random", "components": ["first", "second", "third"] });
     file["hypotheses"] = json!([{
         "id": "H", "test": "bradley-terry", "response": "nearer", "factors": ["method"],
+        "generalise": "these clips",
         "statement": { "en": "No method is chosen over another.", "fr": "Aucune méthode n’est préférée." },
     }]);
     file.as_object_mut().unwrap().remove("tables");
@@ -122,6 +123,54 @@ fn planted_worths_side_and_ties_are_found_again() {
         if path != "tests" {
             assert!(table.contains("Real face"), "{path}: {table}");
         }
+    }
+}
+
+/// Choices are decided for other clips, too: the ranking on the first screen is that of the model that decides.
+#[test]
+fn choices_are_decided_for_other_clips_by_the_linear_model() {
+    let of_others = |mut file: Value| {
+        file["hypotheses"][0].as_object_mut().unwrap().remove("generalise");
+        study(&file)
+    };
+    let three = of_others(three_methods());
+    let own = report(&three, &planted(&three, &WORTHS, 0.4), 60, Language::English);
+    let results: Value = serde_json::from_str(file(&own, "results.json")).unwrap();
+    let hypothesis = &results["hypotheses"][0];
+    assert_eq!(hypothesis["scope"], "other_clips");
+    assert_eq!(hypothesis["p"], hypothesis["other_clips"]["linear_model"]["p"]);
+    let text = file(&own, "report.md");
+    let screen = &text[..text.find("## Participants").unwrap()];
+    let places = ["Real face: ", "LSTS30: ", "Box (baseline): "]
+        .map(|words| screen.find(words).unwrap_or_else(|| panic!("{words}: {screen}")));
+    assert!(places.is_sorted(), "{screen}");
+    assert!(screen.contains(" % of choices over the others \\["), "{screen}");
+    let reading = &own.readings[0].1;
+    assert!(reading.contains("Real face over Box (baseline): chosen in "), "{reading}");
+    assert!(reading.contains("Of these clips alone: "), "{reading}");
+    let two = of_others(two_methods());
+    let worths = [("lsts30", 0.8), ("box", 0.0)];
+    let own = report(&two, &planted(&two, &worths, 0.0), 60, Language::French);
+    let text = file(&own, "report.md");
+    let screen = &text[..text.find("## Personnes").or_else(|| text.find("## Participants")).unwrap()];
+    assert!(screen.contains("LSTS30 plutôt que Box"), "{screen}");
+    for (language, words) in [
+        (Language::English, "decides: F test of a linear model of choices"),
+        (Language::French, "décide : test F d’un modèle linéaire des choix"),
+    ] {
+        let parameters = Parameters::for_study(&three);
+        let options = PowerOptions {
+            participants: vec![12],
+            clips: Vec::new(),
+            runs: 3,
+            seed: 1,
+            alpha: 0.05,
+            false_positives: false,
+            mixed: false,
+        };
+        let found = power(&three, "hash", &parameters, &options, &|| {}).unwrap();
+        let text = preregistered(&three, &parameters, &found, language);
+        assert!(text.contains(words), "{text}");
     }
 }
 

@@ -101,10 +101,10 @@ impl TestName {
         matches!(self, Self::KruskalWallis | Self::Wilcoxon | Self::MannWhitney | Self::Friedman)
     }
 
-    /// Whether there is a test of it that is about other clips too: of levels that are compared, and of interactions.
+    /// Whether there is a test of it that is about other clips too: of levels that are compared, of interactions and of
+    /// choices.
     pub fn holds_for_other_clips(self) -> bool {
-        let two_way = matches!(self, Self::ScheirerRayHare | Self::AlignedRankTransform);
-        self.compares_levels() || self == Self::ChiSquare || two_way
+        !matches!(self, Self::Spearman | Self::Equivalence)
     }
 
     /// As a study file writes it.

@@ -5,7 +5,7 @@ use mimique_stats::Outcome;
 
 use super::{LEVEL, difference, numbers, unit};
 use crate::hypothesis::other_clips::{
-    ClipModel, ClipPair, DecidingTest, LinearClipModel, OtherClips,
+    ClipModel, ClipPair, DecidingTest, LinearClipModel, LinearClipPair, OtherClips,
 };
 use crate::naming::Naming;
 use crate::trials::measure::MeasureKind;
@@ -102,19 +102,40 @@ fn linear(
     // More pairs stand in the table of tests.
     for pair in model.pairs.iter().filter(|_| model.pairs.len() <= PAIRS) {
         let number = |value: f64| difference(language, kind, value);
-        let [low, high] = pair.interval_95.map(number);
-        let names = naming.pair(factor, &pair.a, &pair.b);
-        let (estimate, unit) = (number(pair.difference), unit(language, kind));
         let p = match model.pairs.len() {
             1 => String::new(),
             _ => format!(", {} (Holm)", language.p(pair.p_corrected)),
         };
+        if kind == MeasureKind::Choice {
+            sentences.push(chosen_over(naming, pair, factor, &p));
+            continue;
+        }
+        let [low, high] = pair.interval_95.map(number);
+        let names = naming.pair(factor, &pair.a, &pair.b);
+        let (estimate, unit) = (number(pair.difference), unit(language, kind));
         sentences.push(language.pick(
             format!("{names}: {estimate}{unit} [{low}; {high}]{p}."),
             format!("{names} : {estimate}{unit} [{low} ; {high}]{p}."),
         ));
     }
     sentences
+}
+
+/// `Box over LSTS: chosen in 62 % [54; 70].`
+fn chosen_over(naming: &Naming<'_>, pair: &LinearClipPair, factor: &str, p: &str) -> String {
+    let language = naming.language;
+    let [low, high] = pair.interval_95;
+    let (more, less, share, [low, high]) = match pair.difference >= 0.0 {
+        true => (&pair.a, &pair.b, pair.difference, [low, high]),
+        false => (&pair.b, &pair.a, -pair.difference, [-high, -low]),
+    };
+    let [more, less] = [more, less].map(|level| naming.level(factor, level));
+    let percent = |share: f64| language.fixed(100.0 * (0.5 + share), 0);
+    let [share, low, high] = [share, low, high].map(percent);
+    language.pick(
+        format!("{more} over {less}: chosen in {share} % [{low}; {high}]{p}."),
+        format!("{more} plutôt que {less} : choix dans {share} % [{low} ; {high}]{p}."),
+    )
 }
 
 /// `F(1, 12.3) = 4.56`.

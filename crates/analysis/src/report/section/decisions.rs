@@ -151,7 +151,9 @@ impl Writer<'_> {
             EffectUnit::Points | EffectUnit::Seconds | EffectUnit::Worth => {
                 language.fixed(value, 2)
             }
-            EffectUnit::Chosen => language.fixed(value * 100.0, 0),
+            EffectUnit::Chosen | EffectUnit::ChosenOverOthers => {
+                language.fixed(value * 100.0, 0)
+            }
         };
         let unit = match effect.unit {
             EffectUnit::Shares => language.pick(" percentage points", " points de pourcentage"),
@@ -159,6 +161,9 @@ impl Writer<'_> {
             EffectUnit::Points => "",
             EffectUnit::Chosen => {
                 language.pick(" % of the choices of one of them", " % des choix de l’un des deux")
+            }
+            EffectUnit::ChosenOverOthers => {
+                language.pick(" % of choices over the others", " % des choix face aux autres")
             }
             EffectUnit::Worth => language.pick(" JND", " DJP"),
         };
@@ -203,7 +208,7 @@ impl Writer<'_> {
                     format!("±{} points de pourcentage", language.fixed(edge * 100.0, 1)),
                 ),
                 (EffectUnit::Seconds, edge) => format!("±{} s", language.fixed(edge, 2)),
-                (EffectUnit::Chosen, edge) => {
+                (EffectUnit::Chosen | EffectUnit::ChosenOverOthers, edge) => {
                     let [low, high] = [0.5 - edge, 0.5 + edge].map(|share| language.percent(share));
                     language.pick(
                         format!("choices from {low} to {high}, the line at {}", language.percent(0.5)),

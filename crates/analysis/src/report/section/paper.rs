@@ -16,6 +16,7 @@ use crate::naming::people_counted;
 use crate::preregistration::pairs::shown;
 use crate::report::results::AboutPeople;
 use crate::report::section::Writer;
+use crate::trials::measure::MeasureKind;
 use crate::trials::rule::Rule;
 
 impl Writer<'_> {
@@ -100,6 +101,11 @@ impl Writer<'_> {
             let decides = result.other_clips.as_ref().filter(|own| own.decides);
             let test = match (decides, deciding_test(&result.recommended)) {
                 (Some(own), _) => match own.deciding_test() {
+                    Some(DecidingTest::LinearModel(_)) if result.kind == MeasureKind::Choice => language.pick(
+                        "linear model of choices (1/2 for the left clip, −1/2 for the right one, 0 for neither; Scheffé, 1952), fitted by restricted maximum likelihood with random effects of participants, of participants with each level, and of segments with each level, with Satterthwaite’s degrees of freedom",
+                        "modèle linéaire des choix (1/2 pour l’extrait de gauche, −1/2 pour celui de droite, 0 pour aucun ; Scheffé, 1952), ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des participants à chaque niveau et des segments à chaque niveau, aux degrés de liberté de Satterthwaite",
+                    )
+                    .to_owned(),
                     Some(DecidingTest::LinearModel(_)) => language.pick(
                         "linear mixed model, fitted by restricted maximum likelihood with random effects of participants, of segments, of both at each level, and of participants for each segment, with Satterthwaite’s degrees of freedom",
                         "modèle linéaire mixte, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des segments, de chacun à chaque niveau, et des participants pour chaque segment, aux degrés de liberté de Satterthwaite",
@@ -280,6 +286,11 @@ impl Writer<'_> {
                     EffectUnit::Chosen => {
                         (100.0, 0, language.pick("% of decided choices", " % des choix tranchés"))
                     }
+                    EffectUnit::ChosenOverOthers => (
+                        100.0,
+                        0,
+                        language.pick("% of choices over the others", " % des choix face aux autres"),
+                    ),
                 };
                 let number = |value: f64| language.fixed(value * scale, decimals);
                 let pair = self.effect_of(factor, effect);

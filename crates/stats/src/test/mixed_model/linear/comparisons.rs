@@ -46,8 +46,7 @@ pub struct LinearComparisonModel {
     pub effect: LinearEffect,
     /// Of each item.
     pub items: Labelled<ChosenOverOthers>,
-    /// Every two items, the second less the first; half of the difference is how far the share of choices between them is
-    /// from 1/2.
+    /// Every two items, the second less the first: how far the share of choices of the second over the first is above 1/2.
     pub pairs: Vec<LinearPair>,
     /// What standing on the left adds to the share of choices.
     pub left: f64,
