@@ -226,8 +226,9 @@ fn comparisons_told(found: LinearComparisonModel) -> LinearClipModel {
         (level.to_owned(), own)
     });
     LinearClipModel {
-        formula: "choice ~ left + item + (1 | participant) + (1 | participant:item) + (1 | segment:item)"
-            .to_owned(),
+        formula:
+            "choice ~ left + item + (1 | participant) + (1 | participant:item) + (1 | segment:item)"
+                .to_owned(),
         observations: found.answers,
         f: found.effect.f,
         df: found.effect.df,

@@ -129,7 +129,10 @@ fn model(
     equivalence::smallest_effect(text, language, hypothesis);
     let decides = language.pick("decides:", "décide :");
     if hypothesis.is_about_other_clips() {
-        text.line(&format!("  - {decides} {}.", test_of_other_clips(language, hypothesis.test.is_of_choices())));
+        text.line(&format!(
+            "  - {decides} {}.",
+            test_of_other_clips(language, hypothesis.test.is_of_choices())
+        ));
         let beside =
             language.pick("beside it, of these clips alone:", "à côté, pour ces extraits seuls :");
         text.line(&format!("  - {beside} {recommended}."));

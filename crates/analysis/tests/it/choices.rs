@@ -152,7 +152,8 @@ fn choices_are_decided_for_other_clips_by_the_linear_model() {
     let worths = [("lsts30", 0.8), ("box", 0.0)];
     let own = report(&two, &planted(&two, &worths, 0.0), 60, Language::French);
     let text = file(&own, "report.md");
-    let screen = &text[..text.find("## Personnes").or_else(|| text.find("## Participants")).unwrap()];
+    let screen =
+        &text[..text.find("## Personnes").or_else(|| text.find("## Participants")).unwrap()];
     assert!(screen.contains("LSTS30 plutôt que Box"), "{screen}");
     for (language, words) in [
         (Language::English, "decides: F test of a linear model of choices"),

@@ -151,9 +151,7 @@ impl Writer<'_> {
             EffectUnit::Points | EffectUnit::Seconds | EffectUnit::Worth => {
                 language.fixed(value, 2)
             }
-            EffectUnit::Chosen | EffectUnit::ChosenOverOthers => {
-                language.fixed(value * 100.0, 0)
-            }
+            EffectUnit::Chosen | EffectUnit::ChosenOverOthers => language.fixed(value * 100.0, 0),
         };
         let unit = match effect.unit {
             EffectUnit::Shares => language.pick(" percentage points", " points de pourcentage"),

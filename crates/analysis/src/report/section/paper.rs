@@ -289,7 +289,8 @@ impl Writer<'_> {
                     EffectUnit::ChosenOverOthers => (
                         100.0,
                         0,
-                        language.pick("% of choices over the others", " % des choix face aux autres"),
+                        language
+                            .pick("% of choices over the others", " % des choix face aux autres"),
                     ),
                 };
                 let number = |value: f64| language.fixed(value * scale, decimals);

@@ -71,9 +71,8 @@ pub(super) struct Block {
     pub first: usize,
     /// How many there are.
     pub size: usize,
-    /// The first block whose answers have the same effects, counted from the first of the block, and the same of the rest:
-    /// where all people see all clips, block 0.
-    pub like: usize,
+    /// How many blocks it represents (see [`Layout::merged`]).
+    pub count: usize,
 }
 
 /// The random effects, ordered: first those that are eliminated, block by block (of each person, say, the person's
@@ -126,7 +125,7 @@ impl Layout {
         for (place, &row) in order.iter().enumerate() {
             let starts = place == 0 || block_of(order[place - 1]) != block_of(row);
             if starts {
-                blocks.push(Block { rows: place..place, first: next, size: 0, like: blocks.len() });
+                blocks.push(Block { rows: place..place, first: next, size: 0, count: 1 });
             }
             for (position, term) in family.iter().enumerate() {
                 let of = (effects[*term], groupings[*term].codes[row]);
@@ -153,7 +152,6 @@ impl Layout {
                 effect[place * terms.len() + position] = first as u32 + groupings[*term].codes[row];
             }
         }
-        alike(&mut blocks, &effect, terms.len(), eliminated);
         Self {
             rows: order,
             blocks,
@@ -174,18 +172,51 @@ impl Layout {
     pub(super) fn size(&self) -> usize {
         self.in_blocks + self.in_rest
     }
-}
 
-/// Finds the blocks that are as one before them.
-fn alike(blocks: &mut [Block], effect: &[u32], terms: usize, eliminated: usize) {
-    let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
-    for (place, block) in blocks.iter_mut().enumerate() {
-        let own = &effect[block.rows.start * terms..block.rows.end * terms];
-        let relative = own.iter().enumerate().map(|(i, effect)| match i % terms < eliminated {
-            true => effect - block.first as u32,
-            false => *effect,
-        });
-        block.like = *known.entry(relative.collect()).or_insert(place);
+    /// Blocks of the same design merged into one: those whose answers have the same effects, counted from the first of the
+    /// block, and the same of the rest (where all people see all clips, all blocks). Returns also the numbers of the
+    /// blocks that each merged block represents; the first of them gives it its answers.
+    pub(super) fn merged(&self) -> (Self, Vec<Vec<usize>>) {
+        let terms = self.terms.len();
+        let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
+        let mut members: Vec<Vec<usize>> = Vec::new();
+        for (number, block) in self.blocks.iter().enumerate() {
+            let own = &self.effect[block.rows.start * terms..block.rows.end * terms];
+            let relative = own.iter().enumerate().map(|(i, effect)| {
+                let from = if i % terms < self.eliminated { block.first } else { 0 };
+                effect - from as u32
+            });
+            let place = *known.entry(relative.collect()).or_insert(members.len());
+            match members.get_mut(place) {
+                Some(same) => same.push(number),
+                None => members.push(vec![number]),
+            }
+        }
+        let in_blocks: usize = members.iter().map(|same| self.blocks[same[0]].size).sum();
+        let (mut blocks, mut rows, mut effect) = (Vec::new(), Vec::new(), Vec::new());
+        let mut first = 0;
+        for same in &members {
+            let block = &self.blocks[same[0]];
+            let start = rows.len();
+            rows.extend_from_slice(&self.rows[block.rows.clone()]);
+            for place in block.rows.clone() {
+                let own = self.effects(place).iter().enumerate();
+                effect.extend(own.map(|(term, effect)| match term < self.eliminated {
+                    true => effect - block.first as u32 + first as u32,
+                    false => effect - self.in_blocks as u32 + in_blocks as u32,
+                }));
+            }
+            blocks.push(Block {
+                rows: start..rows.len(),
+                first,
+                size: block.size,
+                count: same.len(),
+            });
+            first += block.size;
+        }
+        let terms = self.terms.clone();
+        let (eliminated, in_rest) = (self.eliminated, self.in_rest);
+        (Self { rows, blocks, terms, eliminated, in_blocks, in_rest, effect }, members)
     }
 }
 

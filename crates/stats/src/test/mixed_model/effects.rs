@@ -4,6 +4,10 @@
 //! Effects are in units of their standard deviation (Λ holds these), so that a standard deviation of 0 is no special
 //! case. With B the diagonal blocks and A their coupling with the rest, X = L^-1 A for B = L L', the rest's system is
 //! S = C - X' X (the Schur complement), which is dense.
+//!
+//! A block that represents n others of the same design has their sum, divided by √n, as its effects: of n blocks turned by an
+//! orthogonal matrix whose first row is 1/√n, that is the only one that meets the rest (with √n A), and each of the other
+//! n - 1 has the system B alone.
 
 use super::design::Layout;
 use crate::numerics::dot;
@@ -11,7 +15,7 @@ use crate::numerics::dot;
 /// A factored system.
 #[derive(Clone)]
 pub(super) struct Factored {
-    /// Where L and X of each block begin; blocks that are alike share them where weights are.
+    /// Where L and X of each block begin.
     at: Vec<[usize; 2]>,
     /// L of each block, one after the other.
     blocks: Vec<f64>,
@@ -19,8 +23,6 @@ pub(super) struct Factored {
     cross: Vec<f64>,
     /// L of S.
     rest: Vec<f64>,
-    /// How many blocks each stands for.
-    count: Vec<usize>,
     /// ln det of the whole.
     pub ln_det: f64,
 }
@@ -30,39 +32,23 @@ pub(super) struct Factored {
 pub(super) enum Weights<'w> {
     /// Each by itself.
     Own(&'w [f64]),
-    /// All alike, with 1: blocks of the same answers are the same.
+    /// All with 1.
     One,
 }
 
 impl Factored {
-    /// A system whose blocks are all different.
+    /// A system of a layout, not yet factored.
     pub(super) fn new(layout: &Layout) -> Self {
-        Self::of(layout, |place| place)
-    }
-
-    /// A system of answers that weigh alike.
-    pub(super) fn of_equal_weights(layout: &Layout) -> Self {
-        Self::of(layout, |place| layout.blocks[place].like)
-    }
-
-    fn of(layout: &Layout, like: impl Fn(usize) -> usize) -> Self {
         let rest = layout.in_rest;
         let (mut own, mut cross) = (0, 0);
         let mut at: Vec<[usize; 2]> = Vec::with_capacity(layout.blocks.len());
-        let mut count = vec![0; layout.blocks.len()];
-        for (place, block) in layout.blocks.iter().enumerate() {
-            let like = like(place);
-            count[like] += 1;
-            if like < place {
-                at.push(at[like]);
-                continue;
-            }
+        for block in &layout.blocks {
             at.push([own, cross]);
             own += block.size * block.size;
             cross += block.size * rest;
         }
         let [blocks, cross, rest] = [own, cross, rest * rest].map(|size| vec![0.0; size]);
-        Self { at, blocks, cross, rest, count, ln_det: 0.0 }
+        Self { at, blocks, cross, rest, ln_det: 0.0 }
     }
 
     /// L and X of a block.
@@ -84,10 +70,7 @@ impl Factored {
         self.ln_det = 0.0;
         let mut nonzero: Vec<u32> = Vec::with_capacity(rest);
         for (number, block) in layout.blocks.iter().enumerate() {
-            if self.count[number] == 0 {
-                continue;
-            }
-            let count = self.count[number] as f64;
+            let count = block.count as f64;
             let (size, [start, cross]) = (block.size, self.at[number]);
             let own = &mut self.blocks[start..start + size * size];
             let cross = &mut self.cross[cross..cross + size * rest];
@@ -170,8 +153,9 @@ impl Factored {
             let (lower, cross) = self.block(layout, number);
             let part = &mut own[block.first..block.first + block.size];
             forward(lower, block.size, part);
+            let root = (block.count as f64).sqrt();
             for (i, value) in part.iter().enumerate() {
-                let cross = &cross[i * rest..][..rest];
+                let (value, cross) = (root * value, &cross[i * rest..][..rest]);
                 of_rest.iter_mut().zip(cross).for_each(|(r, x)| *r -= value * x);
             }
         }
@@ -180,11 +164,17 @@ impl Factored {
         for (number, block) in layout.blocks.iter().enumerate() {
             let (lower, cross) = self.block(layout, number);
             let part = &mut own[block.first..block.first + block.size];
+            let root = (block.count as f64).sqrt();
             for (i, value) in part.iter_mut().enumerate() {
-                *value -= dot(&cross[i * rest..][..rest], of_rest);
+                *value -= root * dot(&cross[i * rest..][..rest], of_rest);
             }
             backward(lower, block.size, part);
         }
+    }
+
+    /// B^-1 of a block: block's effects x block's effects.
+    pub(super) fn block_inverse(&self, layout: &Layout, number: usize) -> Vec<f64> {
+        inverse(self.block(layout, number).0, layout.blocks[number].size)
     }
 
     /// The diagonal of the inverse, an effect each.
@@ -194,29 +184,19 @@ impl Factored {
         let mut y = Vec::new();
         for (number, block) in layout.blocks.iter().enumerate() {
             let size = block.size;
-            if self.count[number] == 0 {
-                let first = layout.blocks[block.like].first;
-                diagonal.copy_within(first..first + size, block.first);
-                continue;
-            }
+            let count = block.count as f64;
             let (lower, cross) = self.block(layout, number);
-            let own = inverse(lower, size);
+            let own = inverse_diagonal(lower, size);
             // With Y = B^-1 A the block's part of the inverse is B^-1 + Y S^-1 Y'.
             y.clear();
             y.extend_from_slice(cross);
             to_inverse(lower, size, &mut y);
             for (i, row) in y.chunks_exact_mut(rest.max(1)).enumerate() {
                 forward(&self.rest, rest, row);
-                diagonal[block.first + i] = dot(row, row);
-            }
-            for i in 0..size {
-                diagonal[block.first + i] += own[i * size + i];
+                diagonal[block.first + i] = count * dot(row, row) + own[i];
             }
         }
-        let of_rest = inverse(&self.rest, rest);
-        for i in 0..rest {
-            diagonal[layout.in_blocks + i] = of_rest[i * rest + i];
-        }
+        diagonal[layout.in_blocks..].copy_from_slice(&inverse_diagonal(&self.rest, rest));
         diagonal
     }
 
@@ -331,9 +311,9 @@ fn backward(lower: &[f64], size: usize, values: &mut [f64]) {
     }
 }
 
-/// (L L')^-1, whole.
-pub(super) fn inverse(lower: &[f64], size: usize) -> Vec<f64> {
-    // Column i of L^-1 as row i, from its place i on: row j of L^-1 is built of those before it.
+/// The columns of L^-1 as rows, column i from its place i on.
+fn inverse_columns(lower: &[f64], size: usize) -> Vec<f64> {
+    // Row j of L^-1 is built of those before it.
     let mut columns = vec![0.0; size * size];
     for j in 0..size {
         let row = &lower[j * size..][..size];
@@ -343,6 +323,19 @@ pub(super) fn inverse(lower: &[f64], size: usize) -> Vec<f64> {
             column[j] = (unit - dot(&row[i..j], &column[i..j])) / row[j];
         }
     }
+    columns
+}
+
+/// The diagonal of (L L')^-1.
+fn inverse_diagonal(lower: &[f64], size: usize) -> Vec<f64> {
+    let columns = inverse_columns(lower, size);
+    let own = |i: usize| &columns[i * size..][i..size];
+    (0..size).map(|i| dot(own(i), own(i))).collect()
+}
+
+/// (L L')^-1, whole.
+pub(super) fn inverse(lower: &[f64], size: usize) -> Vec<f64> {
+    let columns = inverse_columns(lower, size);
     let mut inverse = vec![0.0; size * size];
     for i in 0..size {
         for j in 0..=i {
@@ -416,9 +409,9 @@ mod tests {
         }
     }
 
-    /// Where answers weigh alike, people who gave the same answers share their blocks; nothing else changes.
+    /// People who answered the same clips are solved as one block of their sums; nothing else changes.
     #[test]
-    fn blocks_that_are_alike_are_factored_once() {
+    fn merged_blocks_give_the_same_solutions() {
         let mut codes = [const { Vec::new() }; 4];
         for person in 0..7_u32 {
             // Two orders of the same clips, and two people who miss some.
@@ -437,24 +430,47 @@ mod tests {
             let levels = (0..21).map(|level: u32| level.to_string()).collect();
             Factor { name: String::new(), levels, codes }.used()
         });
-        let layout = Layout::of(&factors.each_ref(), rows);
-        let like: Vec<usize> = layout.blocks.iter().map(|block| block.like).collect();
-        assert_eq!(like, [0, 1, 2, 2, 2, 2, 2]);
+        let each_layout = Layout::of(&factors.each_ref(), rows);
+        let (layout, members) = each_layout.merged();
+        assert_eq!(members, [vec![0], vec![1], vec![2, 3, 4, 5, 6]]);
         let scale = [0.7, 1.3, -0.4, 0.9];
-        let (mut each, mut once) = (Factored::new(&layout), Factored::of_equal_weights(&layout));
-        assert!(each.factor(&layout, &scale, Weights::Own(&vec![1.0; rows])));
-        assert!(once.factor(&layout, &scale, Weights::One));
-        assert!((each.ln_det - once.ln_det).abs() < 1e-12);
+        let (mut each, mut merged) = (Factored::new(&each_layout), Factored::new(&layout));
+        assert!(each.factor(&each_layout, &scale, Weights::Own(&vec![1.0; rows])));
+        assert!(merged.factor(&layout, &scale, Weights::One));
+        assert!((each.ln_det - merged.ln_det).abs() < 1e-12);
         let mut random = Random::new(5);
-        let mut values: Vec<f64> = (0..layout.size()).map(|_| random.normal()).collect();
-        let mut same = values.clone();
-        each.solve(&layout, &mut values);
-        once.solve(&layout, &mut same);
-        let diagonals = [&each, &once].map(|own| own.inverse_diagonal(&layout));
-        for i in 0..layout.size() {
-            assert!((values[i] - same[i]).abs() < 1e-12);
-            assert!((diagonals[0][i] - diagonals[1][i]).abs() < 1e-12);
+        let summed = |values: &[f64]| {
+            let mut sums = vec![0.0; layout.size()];
+            for (block, same) in layout.blocks.iter().zip(&members) {
+                for (number, i) in same.iter().flat_map(|n| (0..block.size).map(move |i| (n, i))) {
+                    let own = values[each_layout.blocks[*number].first + i];
+                    sums[block.first + i] += own / (same.len() as f64).sqrt();
+                }
+            }
+            sums[layout.in_blocks..].copy_from_slice(&values[each_layout.in_blocks..]);
+            sums
+        };
+        let mut values: Vec<f64> = (0..each_layout.size()).map(|_| random.normal()).collect();
+        let mut sums = summed(&values);
+        each.solve(&each_layout, &mut values);
+        merged.solve(&layout, &mut sums);
+        summed(&values).iter().zip(&sums).for_each(|(a, b)| assert!((a - b).abs() < 1e-12));
+        let diagonal = each.inverse_diagonal(&each_layout);
+        let of_sums = merged.inverse_diagonal(&layout);
+        for ((number, block), same) in layout.blocks.iter().enumerate().zip(&members) {
+            let alone = merged.block_inverse(&layout, number);
+            for (member, i) in same.iter().flat_map(|n| (0..block.size).map(move |i| (n, i))) {
+                let share = 1.0 / same.len() as f64;
+                let own =
+                    share * of_sums[block.first + i] + (1.0 - share) * alone[i * block.size + i];
+                let first = each_layout.blocks[*member].first;
+                assert!((own - diagonal[first + i]).abs() < 1e-12);
+            }
         }
+        let of_rest = of_sums[layout.in_blocks..].iter();
+        of_rest
+            .zip(&diagonal[each_layout.in_blocks..])
+            .for_each(|(a, b)| assert!((a - b).abs() < 1e-12));
     }
 
     #[test]
