@@ -41,7 +41,9 @@ pub fn run(runs: usize, recorded: bool) -> Result<()> {
             let mut command = Command::new(demo::binary_path());
             command.arg("--json").arg("power").arg(&study);
             command.args(["--participants", &list(&PEOPLE), "--clips", &list(&CLIPS)]);
-            command.args(["--runs", &runs.to_string(), "--parameters"]).arg(&file);
+            // Without effects the power that is counted is the share of false positives.
+            command.args(["--runs", &runs.to_string(), "--no-false-positives", "--parameters"]);
+            command.arg(&file);
             let found: Value =
                 serde_json::from_str(&output(&mut command).context("mimique power failed")?)?;
             let points = found["power"]["points"].as_array().context("no points")?;
@@ -50,8 +52,8 @@ pub fn run(runs: usize, recorded: bool) -> Result<()> {
                 let mut cells = Vec::new();
                 for own in hypotheses {
                     let id = own["id"].as_str().context("no id")?.to_owned();
-                    let share = |of: &str| own[of]["recommended"]["share"].as_f64();
-                    let wrong = share("false_positives").context("no false positives")?;
+                    let wrong = own["power"]["deciding"]["share"].as_f64();
+                    let wrong = wrong.context("no false positives")?;
                     let most = highest.entry(id.clone()).or_default();
                     *most = most.max(wrong);
                     cells.push(format!("{:.1}", 100.0 * wrong));
@@ -101,7 +103,17 @@ fn parameters(clip_sd: f64, taste_sd: f64) -> Value {
         })
     };
     json!({
-        "ratings": { "rating": rating(1.0, 4.0), "faithful": rating(SLIDER, 50.0) },
+        "ratings": {
+            "rating": rating(1.0, 4.0),
+            "faithful": rating(SLIDER, 50.0),
+            "together": rating(SLIDER, 50.0),
+        },
+        "comparisons": { "better": {
+            "factor": "method",
+            "worth": { "box": 0, "ridge": 0, "lsts30": 0, "lsts70": 0 },
+            "personSd": taste_sd,
+            "segmentSd": clip_sd,
+        } },
         "recognition": { "emotion": {
             "personSd": 0.5,
             "personBySd": { "method": taste_sd },

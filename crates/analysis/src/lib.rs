@@ -26,7 +26,7 @@
 //! let found = power(&study, "hash of the file", &Parameters::for_study(&study), &options, &|| {})?;
 //! let hypotheses = &found.points[0].hypotheses;
 //! assert_eq!(hypotheses.len(), study.hypotheses.len());
-//! assert!(hypotheses.iter().all(|each| each.power.recommended.share <= 1.0));
+//! assert!(hypotheses.iter().all(|each| each.power.deciding.share <= 1.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -44,10 +44,12 @@ mod simulate;
 mod thresholds;
 mod trials;
 
+pub use hypothesis::ClipScope;
+pub use hypothesis::decision::EffectUnit;
 pub use power::{
     BlockPrecision, Columns, Estimand, HypothesisPower, Power, PowerError, PowerOptions,
-    PowerPoint, PrecisionPoint, Rate, no_effect, power, power_csv, power_curve, power_markdown,
-    power_runs, precision_csv, precision_markdown,
+    PowerPoint, PrecisionPoint, Rate, SmallestDifference, in_scope, no_effect, power, power_csv,
+    power_curve, power_markdown, power_runs, precision_csv, precision_markdown, smallest_cell,
 };
 pub use preregistration::{Preregistration, as_predicted, preregistration};
 pub use report::{MeasuredFaces, Report, ReportOptions, analyze, analyze_with};

@@ -8,8 +8,9 @@ use std::time::Duration;
 use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use mimique_analysis::{
-    Power, PowerOptions, Preregistration, as_predicted, no_effect, power, power_csv, power_curve,
-    power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
+    Power, PowerOptions, Preregistration, as_predicted, in_scope, no_effect, power, power_csv,
+    power_curve, power_markdown, power_runs, precision_csv, precision_markdown, preregistration,
+    smallest_cell,
 };
 use mimique_locale::Language;
 
@@ -199,8 +200,8 @@ fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
     )?;
     let ids = power.points.first().map_or(0, |point| point.hypotheses.len());
     for place in 0..ids {
-        let id = &power.points[0].hypotheses[place].id;
-        writeln!(out, "\n{id}")?;
+        let first = &power.points[0].hypotheses[place];
+        writeln!(out, "\n{}{}", first.id, in_scope(first.scope, Language::English))?;
         if !power.points[0].hypotheses[place].effect {
             writeln!(out, "{}", no_effect(Language::English))?;
         }
@@ -208,7 +209,10 @@ fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
         write!(
             out,
             "{:>7} {:>6}  {:<22} {:<22}",
-            "people", "clips", "power, recommended", "as in the thesis"
+            "people",
+            "clips",
+            if ids > 1 { "power, corrected" } else { "power" },
+            "as in the thesis"
         )?;
         writeln!(out, "{}", if falsely { " false positives        as in the thesis" } else { "" })?;
         for point in &power.points {
@@ -223,19 +227,41 @@ fn print(out: &mut impl std::io::Write, power: &Power) -> std::io::Result<()> {
                 "{:>7} {:>6}  {:<22} {:<22}",
                 point.participants,
                 point.clips,
-                cell(&columns.recommended),
+                cell(&columns.deciding_holm),
                 cell(&columns.as_in_the_thesis)
             )?;
             if let Some(columns) = &hypothesis.false_positives {
-                let (people, trials) =
-                    (cell(&columns.recommended), cell(&columns.as_in_the_thesis));
+                let (people, trials) = (cell(&columns.deciding), cell(&columns.as_in_the_thesis));
                 write!(out, " {people:<22} {trials}")?;
             }
             writeln!(out)?;
         }
         of_clips(out, power, place)?;
+        smallest_differences(out, power, place)?;
     }
     Ok(())
+}
+
+/// For each number of people the smallest difference that the deciding test detects.
+fn smallest_differences(
+    out: &mut impl std::io::Write,
+    power: &Power,
+    place: usize,
+) -> std::io::Result<()> {
+    let smallest = |point: &mimique_analysis::PowerPoint| {
+        let own = point.hypotheses[place].smallest_difference?;
+        let of = smallest_cell(Language::English, own);
+        Some(format!("{of} ({} people, {} clips)", point.participants, point.clips))
+    };
+    let all: Vec<String> = power.points.iter().filter_map(smallest).collect();
+    if all.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "smallest difference between two levels detected with 80 %, uncorrected: {}",
+        all.join(", ")
+    )
 }
 
 /// People x segments, of other clips too, where a hypothesis compares ratings within people.

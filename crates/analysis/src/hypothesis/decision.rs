@@ -1,12 +1,13 @@
 //! What a hypothesis comes to: whether something was shown after the correction over all hypotheses, and how large it
 //! is.
 
-use mimique_stats::EquivalenceVerdict;
+use mimique_stats::{EquivalenceVerdict, normal_quantile_upper, t_quantile_upper};
 use mimique_study::TestName;
+use serde::Serialize;
 
 use crate::choices::preference::Preference;
 use crate::hypothesis::is_two_way;
-use crate::hypothesis::other_clips::{DecidingTest, LinearClipModel};
+use crate::hypothesis::other_clips::{DecidingTest, LinearClipModel, OtherClips};
 use crate::hypothesis::reading::LEVEL;
 use crate::hypothesis::{ClipScope, HypothesisResult};
 use crate::trials::measure::MeasureKind;
@@ -41,8 +42,9 @@ pub(crate) enum Decision {
 }
 
 /// In which unit an effect is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum EffectUnit {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EffectUnit {
     /// Points of a scale.
     Points,
     /// Shares of right answers.
@@ -111,8 +113,7 @@ pub(crate) fn decision(result: &HypothesisResult) -> Decision {
 
 /// p of any difference of a hypothesis of equivalence, corrected where several hypotheses are tested.
 fn p_difference(result: &HypothesisResult) -> Option<f64> {
-    let uncorrected = result.equivalence.as_ref().and_then(|found| found.decides.p_difference);
-    result.p_difference_holm_over_hypotheses.or(uncorrected)
+    result.p_difference_holm_over_hypotheses.or(result.p_difference())
 }
 
 /// What a p next to a decision is a p of.
@@ -148,17 +149,14 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         MeasureKind::ResponseTime => EffectUnit::Seconds,
     };
     if let Some(found) = &result.equivalence {
-        let own = [&found.decides, &found.beside].into_iter().find(|own| own.interval_90.is_some());
         let [a, b] = &found.levels;
-        let effect = own.and_then(|own| {
-            Some(Effect {
-                of: EffectOf::Difference([a, b]),
-                estimate: own.estimate?,
-                interval: own.interval_90?,
-                covers: 90,
-                unit,
-                smallest: Some(found.smallest_effect),
-            })
+        let effect = found.difference(result.scope).map(|own| Effect {
+            of: EffectOf::Difference([a, b]),
+            estimate: own.estimate,
+            interval: own.interval_90,
+            covers: 90,
+            unit,
+            smallest: Some(found.smallest_effect),
         });
         return effect.into_iter().collect();
     }
@@ -199,6 +197,48 @@ pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
         })
     })
     .collect()
+}
+
+/// The difference between two levels that the deciding test detects at a level `alpha` with a power, from the standard error
+/// of the answers' differences: that times t's quantiles for both, on average over the pairs of levels, before Holm's
+/// correction over them. None where the test compares no two levels.
+pub(crate) fn detected(
+    result: &HypothesisResult,
+    alpha: f64,
+    power: f64,
+) -> Option<(f64, EffectUnit)> {
+    if result.equivalence.is_some() || is_two_way(result.test) {
+        return None;
+    }
+    let unit = match result.kind {
+        MeasureKind::Rating => EffectUnit::Points,
+        MeasureKind::Choice => EffectUnit::Chosen,
+        MeasureKind::Recognition => EffectUnit::Shares,
+        MeasureKind::ResponseTime => EffectUnit::Seconds,
+    };
+    let quantiles = |df: f64| t_quantile_upper(alpha / 2.0, df) + t_quantile_upper(1.0 - power, df);
+    let decides = result.other_clips.as_ref().filter(|found| found.decides);
+    let all: Vec<f64> = match (decides.map(OtherClips::deciding_test), &result.preference) {
+        (Some(Some(DecidingTest::LinearModel(model))), _) => {
+            model.pairs.iter().map(|pair| pair.se * quantiles(pair.df)).collect()
+        }
+        (Some(_), _) => Vec::new(),
+        (None, preference) => {
+            let of_choices = match preference {
+                Some(Preference::OneOfTwo(own)) => own.interval,
+                _ => None,
+            };
+            let of_pairs = result.recommended.pairs.iter().filter_map(|pair| {
+                let own = pair.difference?;
+                Some([own.ci_low, own.ci_high])
+            });
+            let se = |[low, high]: [f64; 2]| (high - low) / 2.0 / normal_quantile_upper(0.025);
+            let quantiles = normal_quantile_upper(alpha / 2.0) + normal_quantile_upper(1.0 - power);
+            of_choices.into_iter().chain(of_pairs).map(|ends| se(ends) * quantiles).collect()
+        }
+    };
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    mean.is_finite().then_some((mean, unit))
 }
 
 /// By the linear model of choices: how often each level is chosen over the others, the most chosen first, or how often the

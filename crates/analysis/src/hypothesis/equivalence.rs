@@ -9,6 +9,7 @@ use mimique_stats::{
 use mimique_study::{Hypothesis, Study};
 use serde::Serialize;
 
+use crate::hypothesis::ClipScope;
 use crate::hypothesis::call::{Call, Design};
 use crate::hypothesis::not_tested::NotTested;
 use crate::hypothesis::person_level::PersonLevel;
@@ -43,13 +44,50 @@ pub(crate) struct Equivalence {
     pub within_people: bool,
     /// People of the pairs, or of each group.
     pub people: Vec<usize>,
-    /// By ranks.
-    pub decides: OneSidedTests,
+    /// By the linear mixed model, where that decides for other clips; none where it cannot be estimated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub for_other_clips: Option<EquivalenceT>,
+    /// By ranks; what decides for these clips.
+    pub by_ranks: OneSidedTests,
     /// By t.
-    pub beside: OneSidedTests,
+    pub by_t: OneSidedTests,
     /// Difference of each person; none between people.
     #[serde(skip)]
     pub differences: Vec<f64>,
+}
+
+/// The difference of both levels as the test that decides estimates it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct EstimatedDifference {
+    /// Of the first level less the second.
+    pub estimate: f64,
+    pub interval_90: [f64; 2],
+}
+
+impl Equivalence {
+    /// p of any difference by the test that decides for these clips or for others.
+    pub(crate) fn p_difference(&self, scope: ClipScope) -> Option<f64> {
+        match scope {
+            ClipScope::Others => self.for_other_clips.map(|own| own.p_difference),
+            ClipScope::These | ClipScope::NotTold => self.by_ranks.p_difference,
+        }
+    }
+
+    /// The difference by the test that decides; for these clips by t where ranks give none.
+    pub(crate) fn difference(&self, scope: ClipScope) -> Option<EstimatedDifference> {
+        match scope {
+            ClipScope::Others => self.for_other_clips.map(|own| EstimatedDifference {
+                estimate: own.difference,
+                interval_90: own.interval_90,
+            }),
+            ClipScope::These | ClipScope::NotTold => {
+                [&self.by_ranks, &self.by_t].into_iter().find_map(|own| {
+                    let (estimate, interval_90) = (own.estimate?, own.interval_90?);
+                    Some(EstimatedDifference { estimate, interval_90 })
+                })
+            }
+        }
+    }
 }
 
 /// The tests of a hypothesis of equivalence.
@@ -101,8 +139,9 @@ pub(crate) fn tested(
         levels,
         within_people: of_clips,
         people,
-        decides,
-        beside,
+        for_other_clips: None,
+        by_ranks: decides,
+        by_t: beside,
         differences,
     };
     Ok(Tested { equivalence, trials: vec![trials.line], people: person_level })

@@ -80,9 +80,16 @@ pub(crate) struct HypothesisResult {
     pub reading: String,
 }
 
+impl HypothesisResult {
+    /// p of any difference, uncorrected, of a hypothesis of equivalence.
+    pub(crate) fn p_difference(&self) -> Option<f64> {
+        self.equivalence.as_ref()?.p_difference(self.scope)
+    }
+}
+
 /// Which clips a decision is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub(crate) enum ClipScope {
+pub enum ClipScope {
     /// Other people, and other clips of other segments.
     #[serde(rename = "other_clips")]
     Others,
@@ -148,7 +155,7 @@ pub(crate) fn test_hypothesis(
             not_tested(language, &NotTested::NoAnswers { response })
         }
     };
-    let Read { trials, people, equivalence, mut reading } = read;
+    let Read { trials, people, mut equivalence, mut reading } = read;
     if trials_without_level > 0 {
         reading.push(' ');
         reading += &reading::trials_without_level(language, trials_without_level);
@@ -162,14 +169,23 @@ pub(crate) fn test_hypothesis(
     let kind = measure.as_ref().map_or(MeasureKind::Rating, |measure| measure.kind);
     let other_clips =
         measure.as_ref().and_then(|measure| of_clips(export, study, hypothesis, measure, clips));
-    if let Some(found) = &other_clips {
+    if let (Some(own), Some(found)) = (&mut equivalence, &other_clips)
+        && found.decides
+    {
+        own.for_other_clips = found.equivalence(own.smallest_effect);
+    }
+    if let (Some(found), Some(measure)) = (&other_clips, &measure) {
         let tested = if is_two_way(hypothesis.test) { 2 } else { 1 };
         let factors = &hypothesis.factors[..hypothesis.factors.len().min(tested)];
-        let words = reading::other_clips(naming, found, kind, factors);
+        let words = match &equivalence {
+            Some(own) => reading::equivalence_for_other_clips(naming, own, found, measure, factors),
+            None => reading::other_clips(naming, found, kind, factors),
+        };
         reading = with_words(language, &words, &reading, found.decides);
     }
-    let decided = match &other_clips {
-        Some(found) if found.decides => found.p(),
+    let decided = match (&other_clips, &equivalence) {
+        (Some(found), Some(own)) if found.decides => own.for_other_clips.map(|tests| tests.p),
+        (Some(found), None) if found.decides => found.p(),
         _ => deciding_p(&people),
     };
     let scope = match &other_clips {
@@ -236,7 +252,12 @@ fn of_clips(
     measure: &Measure,
     tests: OtherClipsTests,
 ) -> Option<OtherClips> {
-    if !hypothesis.test.holds_for_other_clips() || of_pair(study, hypothesis).is_some() {
+    let is_undecided =
+        hypothesis.test == TestName::Equivalence && !hypothesis.is_about_other_clips();
+    if !hypothesis.test.holds_for_other_clips()
+        || is_undecided
+        || of_pair(study, hypothesis).is_some()
+    {
         return None;
     }
     let mut factors = factors(export, study, hypothesis, measure).ok()?;

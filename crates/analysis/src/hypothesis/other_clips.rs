@@ -5,9 +5,10 @@
 use std::sync::Arc;
 
 use mimique_stats::{
-    Factor, Labelled, LinearComparisonModel, LinearMean, LinearMixedModel, LinearMixedModelOptions,
-    LinearPair, MinFPrime, MixedModel, MixedModelOptions, MixedShares, Outcome, PairedComparisons,
-    TestResult, linear_comparison_model, linear_mixed_model, min_f_prime, mixed_model,
+    EquivalenceOptions, EquivalenceT, Factor, Labelled, LinearComparisonModel, LinearMean,
+    LinearMixedModel, LinearMixedModelOptions, LinearPair, MinFPrime, MixedModel,
+    MixedModelOptions, MixedShares, Outcome, PairedComparisons, TestResult,
+    linear_comparison_model, linear_mixed_model, min_f_prime, mixed_model,
 };
 use serde::Serialize;
 
@@ -76,6 +77,7 @@ pub(crate) struct LinearClipPair {
     pub b: String,
     /// a less b; of choices, how far the share of choices of a over b is above 1/2.
     pub difference: f64,
+    pub se: f64,
     pub interval_95: [f64; 2],
     pub df: f64,
     /// After Holm's correction over the pairs.
@@ -138,6 +140,15 @@ impl OtherClips {
             (_, Some(Outcome::Ok(line))) => Some(DecidingTest::MinF(line)),
             _ => None,
         }
+    }
+
+    /// Whether the two levels differ by less than the smallest effect that matters, by two one-sided tests of the model's
+    /// difference. None where there are not two levels or the model cannot be estimated.
+    pub(crate) fn equivalence(&self, smallest_effect: f64) -> Option<EquivalenceT> {
+        let DecidingTest::LinearModel(model) = self.deciding_test()? else { return None };
+        let [pair] = model.pairs.as_slice() else { return None };
+        let options = EquivalenceOptions::smallest_effect(smallest_effect);
+        EquivalenceT::of(pair.difference, pair.se, pair.df, &options).ok()?.ok()
     }
 
     /// Its p.
@@ -251,6 +262,7 @@ fn linear_pair(pair: LinearPair) -> LinearClipPair {
         a: pair.a,
         b: pair.b,
         difference: -pair.difference,
+        se: pair.se,
         interval_95: [-high, -low],
         df: pair.df,
         p_corrected: pair.p_holm,

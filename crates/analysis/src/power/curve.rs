@@ -45,14 +45,14 @@ fn legend(svg: &mut Svg, language: Language) {
     let (first, second) = (16.0, 36.0);
     svg.line([8.0, first], [30.0, first], "whisker");
     svg.circle(19.0, first, 4.0, "mark");
-    let words = language.pick("power, recommended", "puissance, recommandé");
+    let words = language.pick("power, corrected (Holm)", "puissance, corrigée (Holm)");
     svg.text(36.0, first + 4.0, "small", Anchor::Start, words);
     svg.line([8.0, second], [30.0, second], "zero");
     svg.circle(19.0, second, 4.0, "box");
     let words = language.pick("power, as in the thesis", "puissance, comme dans la thèse");
     svg.text(36.0, second + 4.0, "small", Anchor::Start, words);
     svg.diamond(239.0, first, 5.0, "mark");
-    let words = language.pick("false positives, recommended", "faux positifs, recommandé");
+    let words = language.pick("false positives, uncorrected", "faux positifs, non corrigés");
     svg.text(252.0, first + 4.0, "small", Anchor::Start, words);
     svg.diamond(239.0, second, 5.0, "box");
     let words = language.pick("the same, as in the thesis", "faux positifs, comme la thèse");
@@ -110,10 +110,10 @@ fn panel(
         }
     };
     curve(&|columns| columns.as_in_the_thesis, "zero", "box");
-    curve(&|columns| columns.recommended, "whisker", "mark");
+    curve(&|columns| columns.deciding_holm, "whisker", "mark");
     for (point, hypothesis) in points {
         let Some(columns) = &hypothesis.false_positives else { continue };
-        for (rate, class) in [(columns.as_in_the_thesis, "box"), (columns.recommended, "mark")] {
+        for (rate, class) in [(columns.as_in_the_thesis, "box"), (columns.deciding, "mark")] {
             svg.diamond(x(point), y(rate.share), 5.0, class);
         }
     }

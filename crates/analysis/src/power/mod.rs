@@ -1,7 +1,7 @@
 //! Power: the study's own analysis over simulated answers, against the number of people and of clips.
 //!
-//! Each run simulates a whole study and tests every hypothesis of its file in both columns of the report:
-//! as in the thesis (trials taken for independent observations) and recommended (one value a person).
+//! Each run simulates a whole study and tests every hypothesis of its file as in the thesis (trials taken for independent
+//! observations) and by the test that decides it in the report, for other clips or for these.
 //! With the effects of the parameters the share of runs with p below alpha is the power, without them the
 //! rate of false positives.
 
@@ -23,6 +23,8 @@ use mimique_study::{Hypothesis, OrderError, Problem, Study, TestName};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::hypothesis::ClipScope;
+use crate::hypothesis::decision::{EffectUnit, detected};
 use crate::hypothesis::other_clips::OtherClipsTests;
 use crate::hypothesis::test_line::OutcomeP;
 use crate::hypothesis::undefined::TestOutcome;
@@ -34,7 +36,10 @@ use design::Design;
 pub use precision::{BlockPrecision, Estimand, PrecisionPoint};
 pub use precision_table::{precision_csv, precision_markdown};
 pub(crate) use table::enough;
-pub use table::{no_effect, power_csv, power_markdown};
+pub use table::{in_scope, no_effect, power_csv, power_markdown, smallest_cell};
+
+/// The power with which [`HypothesisPower::smallest_difference`] is detected.
+const SMALLEST_DIFFERENCE_POWER: f64 = 0.8;
 
 /// What is varied, and how often it is simulated.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,6 +98,12 @@ pub struct PowerPoint {
 pub struct HypothesisPower {
     /// Its identifier.
     pub id: String,
+    /// Which clips its decision is about.
+    pub scope: ClipScope,
+    /// The smallest difference between two levels that the deciding test detects with a power of 80 %; none of
+    /// interactions, correlations and equivalence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smallest_difference: Option<SmallestDifference>,
     /// Whether the parameters hold an effect for it ([`Parameters::has_effect`]). Without one, what is
     /// counted as power is false positives.
     pub effect: bool,
@@ -107,16 +118,25 @@ pub struct HypothesisPower {
 pub struct Columns {
     /// The thesis's tests of single trials.
     pub as_in_the_thesis: Rate,
-    /// The recommended test of one value a person.
-    pub recommended: Rate,
+    /// The test that decides the hypothesis.
+    pub deciding: Rate,
     /// The same with Holm's correction over the study's hypotheses.
-    pub recommended_holm: Rate,
+    pub deciding_holm: Rate,
     /// Min F', of other clips too, where ratings are compared within people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_f: Option<Rate>,
     /// The linear mixed model, of other clips too, where it decides or was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mixed: Option<Rate>,
+}
+
+/// A difference with the unit of the answers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SmallestDifference {
+    /// The difference; of choices, how far the share of choices lies above 1/2.
+    pub value: f64,
+    /// Its unit.
+    pub unit: EffectUnit,
 }
 
 /// A share of positive tests.
@@ -174,8 +194,10 @@ struct Run {
 
 #[derive(Clone, Copy)]
 struct Found {
+    scope: ClipScope,
+    smallest: Option<SmallestDifference>,
     thesis: Option<f64>,
-    recommended: Option<f64>,
+    deciding: Option<f64>,
     holm: Option<f64>,
     /// Of other clips too: whether it was tested, and p.
     min_f: Option<Option<f64>>,
@@ -215,7 +237,8 @@ pub fn power(
                     } else {
                         OtherClipsTests::Deciding
                     };
-                    let result = one_run(study, &design, model, seed, participants, tests);
+                    let result =
+                        one_run(study, &design, model, seed, participants, tests, options.alpha);
                     progress();
                     result
                 };
@@ -234,6 +257,8 @@ pub fn power(
                     let equal = without.filter(|_| hypothesis.test == TestName::Equivalence);
                     HypothesisPower {
                         id: hypothesis.id.clone(),
+                        scope: with[0].found[place].scope,
+                        smallest_difference: smallest_difference(&with, place),
                         effect: effects[place] || equal.is_some(),
                         power: equal.unwrap_or_else(|| columns(&with)),
                         false_positives: without
@@ -339,6 +364,7 @@ fn one_run(
     seed: u64,
     participants: usize,
     tests: OtherClipsTests,
+    alpha: f64,
 ) -> Run {
     let export = design.answers(model, seed, participants);
     let naming = Naming { language: Language::English, study };
@@ -347,11 +373,14 @@ fn one_run(
         .iter()
         .map(|hypothesis| {
             let result = test_hypothesis(&naming, &export, study, hypothesis, tests);
+            let smallest = detected(&result, alpha, SMALLEST_DIFFERENCE_POWER);
             let thesis = thesis_p(hypothesis, &result.as_in_the_thesis.tests);
             let clips = result.other_clips.as_ref();
             Found {
                 thesis,
-                recommended: result.p,
+                scope: result.scope,
+                smallest: smallest.map(|(value, unit)| SmallestDifference { value, unit }),
+                deciding: result.p,
                 holm: None,
                 min_f: clips.and_then(|found| found.min_f.as_ref().map(TestOutcome::p)),
                 mixed: clips.and_then(|found| match found.linear_model.as_ref()? {
@@ -361,11 +390,20 @@ fn one_run(
             }
         })
         .collect();
-    let p: Vec<Option<f64>> = found.iter().map(|found| found.recommended).collect();
+    let p: Vec<Option<f64>> = found.iter().map(|found| found.deciding).collect();
     for (found, holm) in found.iter_mut().zip(Adjustment::Holm.apply(&p)) {
         found.holm = holm;
     }
     Run { people: export.flow.people_used, found }
+}
+
+/// The mean over the simulated studies that can be tested.
+fn smallest_difference(runs: &[Run], place: usize) -> Option<SmallestDifference> {
+    let all: Vec<SmallestDifference> =
+        runs.iter().filter_map(|run| run.found[place].smallest).collect();
+    let unit = all.first()?.unit;
+    let value = all.iter().map(|own| own.value).sum::<f64>() / all.len() as f64;
+    Some(SmallestDifference { value, unit })
 }
 
 /// The p that the thesis would have decided by: the interaction of two factors, the one test, or the
@@ -397,8 +435,8 @@ fn columns(runs: &[Run], place: usize, alpha: f64) -> Columns {
     };
     Columns {
         as_in_the_thesis: rate(|found| found.thesis),
-        recommended: rate(|found| found.recommended),
-        recommended_holm: rate(|found| found.holm),
+        deciding: rate(|found| found.deciding),
+        deciding_holm: rate(|found| found.holm),
         min_f: tested(|found| found.min_f).then(|| rate(|found| found.min_f.flatten())),
         mixed: tested(|found| found.mixed).then(|| rate(|found| found.mixed.flatten())),
     }

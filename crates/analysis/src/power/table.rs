@@ -6,7 +6,9 @@ use mimique_locale::Language;
 use mimique_report::document::csv_text;
 
 use super::precision_table::precision_markdown;
-use super::{Columns, HypothesisPower, Power, PowerPoint, Rate};
+use super::{Columns, HypothesisPower, Power, PowerPoint, Rate, SmallestDifference};
+use crate::hypothesis::ClipScope;
+use crate::hypothesis::decision::EffectUnit;
 
 /// One row a number of people, number of clips and hypothesis.
 pub fn power_csv(power: &Power) -> String {
@@ -15,7 +17,7 @@ pub fn power_csv(power: &Power) -> String {
             .map(str::to_owned)
             .into();
     for kind in ["power", "false_positives"] {
-        for column in ["as_in_the_thesis", "recommended", "recommended_holm"] {
+        for column in ["as_in_the_thesis", "deciding", "deciding_holm"] {
             let ends = ["", "_low", "_high", "_undefined"];
             heading.extend(ends.map(|end| format!("{kind}_{column}{end}")));
         }
@@ -26,7 +28,8 @@ pub fn power_csv(power: &Power) -> String {
             heading.extend(ends.map(|end| format!("{kind}_{column}{end}")));
         }
     }
-    heading.push("segments".to_owned());
+    let last = ["segments", "scope", "smallest_difference", "smallest_difference_unit"];
+    heading.extend(last.map(str::to_owned));
     let points = power.points.iter().flat_map(|point| {
         point.hypotheses.iter().map(move |hypothesis| row(power, point, hypothesis))
     });
@@ -56,6 +59,10 @@ fn row(power: &Power, point: &PowerPoint, hypothesis: &HypothesisPower) -> Vec<S
         of_clips.into_iter().for_each(|rate| row.extend(rate_cells(rate)));
     }
     row.push(point.segments.to_string());
+    row.push(scope_code(hypothesis.scope).to_owned());
+    let smallest = hypothesis.smallest_difference;
+    row.push(smallest.map_or_else(String::new, |own| format!("{:.5}", own.value)));
+    row.push(smallest.map_or("", |own| unit_code(own.unit)).to_owned());
     row
 }
 
@@ -71,7 +78,7 @@ fn rate_cells(rate: Option<Rate>) -> [String; 4] {
 }
 
 fn all(columns: &Columns) -> [Option<Rate>; 3] {
-    [columns.as_in_the_thesis, columns.recommended, columns.recommended_holm].map(Some)
+    [columns.as_in_the_thesis, columns.deciding, columns.deciding_holm].map(Some)
 }
 
 /// A table a hypothesis.
@@ -79,53 +86,74 @@ pub fn power_markdown(power: &Power, language: Language) -> String {
     let mut text = String::new();
     let ids = power.points.first().map(|point| point.hypotheses.len()).unwrap_or(0);
     for place in 0..ids {
-        let Some(first) = power.points.first() else { break };
-        let _ = writeln!(text, "**{}**\n", first.hypotheses[place].id);
-        if !first.hypotheses[place].effect {
+        let Some(first) = power.points.first().map(|point| &point.hypotheses[place]) else { break };
+        let _ = writeln!(text, "**{}**{}\n", first.id, in_scope(first.scope, language));
+        if !first.effect {
             let _ = writeln!(text, "{}\n", no_effect(language));
         }
-        let falsely = first.hypotheses[place].false_positives.is_some();
-        let mut heading = language
-            .pick(
-                ["people", "used", "clips", "power, recommended", "with Holm", "as in the thesis"],
-                [
-                    "personnes",
-                    "gardées",
-                    "extraits",
-                    "puissance, recommandé",
-                    "avec Holm",
-                    "comme dans la thèse",
-                ],
-            )
-            .to_vec();
-        if falsely {
-            heading.extend(language.pick(
-                ["false positives, recommended", "as in the thesis"],
-                ["faux positifs, recommandé", "comme dans la thèse"],
-            ));
-        }
-        let _ = writeln!(text, "| {} |", heading.join(" | "));
-        let _ = writeln!(text, "|{}", "---:|".repeat(heading.len()));
-        for point in &power.points {
-            let hypothesis = &point.hypotheses[place];
-            let mut cells = vec![
-                point.participants.to_string(),
-                language.fixed(point.people_used, 1),
-                point.clips.to_string(),
-                cell(language, &hypothesis.power.recommended),
-                cell(language, &hypothesis.power.recommended_holm),
-                cell(language, &hypothesis.power.as_in_the_thesis),
-            ];
-            if let Some(columns) = &hypothesis.false_positives {
-                cells.push(cell(language, &columns.recommended));
-                cells.push(cell(language, &columns.as_in_the_thesis));
-            }
-            let _ = writeln!(text, "| {} |", cells.join(" | "));
-        }
+        hypothesis_table(&mut text, power, place, language);
         text.push('\n');
         text += &of_clips(power, place, language);
     }
     text + &precision_markdown(power, language)
+}
+
+/// A row for each number of people and of clips.
+fn hypothesis_table(text: &mut String, power: &Power, place: usize, language: Language) {
+    let own = || power.points.iter().map(|point| &point.hypotheses[place]);
+    let falsely = own().any(|hypothesis| hypothesis.false_positives.is_some());
+    let smallest = own().any(|hypothesis| hypothesis.smallest_difference.is_some());
+    let mut heading = language
+        .pick(
+            [
+                "people",
+                "used",
+                "clips",
+                "power, corrected (Holm)",
+                "uncorrected",
+                "as in the thesis",
+            ],
+            [
+                "personnes",
+                "gardées",
+                "extraits",
+                "puissance, corrigée (Holm)",
+                "non corrigée",
+                "comme dans la thèse",
+            ],
+        )
+        .to_vec();
+    if falsely {
+        heading.extend(language.pick(
+            ["false positives, uncorrected", "as in the thesis"],
+            ["faux positifs, sans correction", "comme dans la thèse"],
+        ));
+    }
+    if smallest {
+        heading.push(language.pick("smallest difference (80 %)", "plus petite différence (80 %)"));
+    }
+    let _ = writeln!(text, "| {} |", heading.join(" | "));
+    let _ = writeln!(text, "|{}", "---:|".repeat(heading.len()));
+    for point in &power.points {
+        let hypothesis = &point.hypotheses[place];
+        let mut cells = vec![
+            point.participants.to_string(),
+            language.fixed(point.people_used, 1),
+            point.clips.to_string(),
+            cell(language, &hypothesis.power.deciding_holm),
+            cell(language, &hypothesis.power.deciding),
+            cell(language, &hypothesis.power.as_in_the_thesis),
+        ];
+        if let Some(columns) = &hypothesis.false_positives {
+            cells.push(cell(language, &columns.deciding));
+            cells.push(cell(language, &columns.as_in_the_thesis));
+        }
+        if smallest {
+            let own = hypothesis.smallest_difference;
+            cells.push(own.map_or_else(|| "–".to_owned(), |own| smallest_cell(language, own)));
+        }
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+    }
 }
 
 /// People x segments of a hypothesis of other clips too; nothing of another one.
@@ -169,6 +197,47 @@ fn of_clips(power: &Power, place: usize, language: Language) -> String {
     text
 }
 
+/// `, for other clips`: which clips the decision is about; nothing where it is about none.
+pub fn in_scope(scope: ClipScope, language: Language) -> &'static str {
+    match scope {
+        ClipScope::Others => language.pick(", for other clips", ", pour d’autres extraits"),
+        ClipScope::These => language.pick(", for these clips", ", pour ces extraits"),
+        ClipScope::NotTold => "",
+    }
+}
+
+fn scope_code(scope: ClipScope) -> &'static str {
+    match scope {
+        ClipScope::Others => "other_clips",
+        ClipScope::These => "these_clips",
+        ClipScope::NotTold => "no_clips",
+    }
+}
+
+/// `0.43 points`: a difference in the unit of its answers.
+pub fn smallest_cell(language: Language, own: SmallestDifference) -> String {
+    let (scale, decimals, unit) = match own.unit {
+        EffectUnit::Points => (1.0, 2, ""),
+        EffectUnit::Seconds => (1.0, 2, " s"),
+        EffectUnit::Shares | EffectUnit::Chosen | EffectUnit::ChosenOverOthers => {
+            (100.0, 1, language.pick(" percentage points", " points de pourcentage"))
+        }
+        EffectUnit::Worth => (1.0, 2, language.pick(" JND", " DJP")),
+    };
+    format!("{}{unit}", language.fixed(scale * own.value, decimals))
+}
+
+fn unit_code(unit: EffectUnit) -> &'static str {
+    match unit {
+        EffectUnit::Points => "points",
+        EffectUnit::Shares => "shares",
+        EffectUnit::Seconds => "seconds",
+        EffectUnit::Chosen => "chosen",
+        EffectUnit::ChosenOverOthers => "chosen-over-others",
+        EffectUnit::Worth => "worth",
+    }
+}
+
 /// What stands above the numbers of a hypothesis that has no effect in the parameters.
 pub fn no_effect(language: Language) -> &'static str {
     language.pick(
@@ -188,14 +257,14 @@ pub(crate) fn cell(language: Language, rate: &Rate) -> String {
     text
 }
 
-/// The smallest number of people with this power in the recommended column, and the clips; none where no
+/// The smallest number of people with this power of the deciding test after the correction, and the clips; none where no
 /// point has it.
 pub(crate) fn enough(power: &Power, place: usize, wanted: f64) -> Option<(usize, usize)> {
     power
         .points
         .iter()
         .filter(|point| {
-            let enough = |h: &HypothesisPower| h.effect && h.power.recommended.share >= wanted;
+            let enough = |h: &HypothesisPower| h.effect && h.power.deciding_holm.share >= wanted;
             point.hypotheses.get(place).is_some_and(enough)
         })
         .map(|point| (point.participants, point.clips))

@@ -129,10 +129,7 @@ fn model(
     equivalence::smallest_effect(text, language, hypothesis);
     let decides = language.pick("decides:", "décide :");
     if hypothesis.is_about_other_clips() {
-        text.line(&format!(
-            "  - {decides} {}.",
-            test_of_other_clips(language, hypothesis.test.is_of_choices())
-        ));
+        text.line(&format!("  - {decides} {}.", test_of_other_clips(language, hypothesis)));
         let beside =
             language.pick("beside it, of these clips alone:", "à côté, pour ces extraits seuls :");
         text.line(&format!("  - {beside} {recommended}."));
@@ -251,8 +248,8 @@ fn recommended_test(language: Language, hypothesis: &Hypothesis, setting: &Setti
 }
 
 /// The test of a hypothesis about other clips too.
-fn test_of_other_clips(language: Language, of_choices: bool) -> String {
-    if of_choices {
+fn test_of_other_clips(language: Language, hypothesis: &Hypothesis) -> String {
+    if hypothesis.test.is_of_choices() {
         return language.pick(
             "F test of a linear model of choices (1/2 where the left clip is chosen, −1/2 where the right one is, 0 for neither; Scheffé 1952), fitted by restricted maximum likelihood with independent random effects of people (who prefer a side), of people with each level and of segments with each level, with Satterthwaite’s degrees of freedom, so that it holds for other people and other clips; pairs by t, corrected by Holm; where the model cannot be estimated the hypothesis counts as not shown",
             "test F d’un modèle linéaire des choix (1/2 si l’extrait de gauche est choisi, −1/2 si c’est celui de droite, 0 pour aucun ; Scheffé 1952), ajusté par maximum de vraisemblance restreinte avec des effets aléatoires indépendants des personnes (qui préfèrent un côté), des personnes à chaque niveau et des segments à chaque niveau, aux degrés de liberté de Satterthwaite, de sorte qu’il vaut pour d’autres personnes et d’autres extraits ; paires par t, corrigées par Holm ; si le modèle ne peut être estimé l’hypothèse est tenue pour non montrée",
@@ -260,6 +257,13 @@ fn test_of_other_clips(language: Language, of_choices: bool) -> String {
         .to_owned();
     }
     let name = name(language, LinearMixedModel::NAMES);
+    if hypothesis.test == TestName::Equivalence {
+        let least = language.number(hypothesis.smallest_effect.unwrap_or(f64::NAN));
+        return language.pick(
+            format!("two one-sided t tests of whether the difference in a {name} lies between −{least} and {least}, p being the larger of the two, fitted by restricted maximum likelihood with independent random effects of people and of segments, of both with each level, and of people with segments, with Satterthwaite’s degrees of freedom, so that it holds for other people and other clips; where the model cannot be estimated the hypothesis counts as undecided"),
+            format!("deux tests t unilatéraux : la différence dans un {name} est-elle entre −{least} et {least}, p étant le plus grand des deux, le modèle étant ajusté par maximum de vraisemblance restreinte avec des effets aléatoires indépendants des personnes et des segments, de chacun à chaque niveau, et des personnes pour chaque segment, aux degrés de liberté de Satterthwaite, de sorte qu’il vaut pour d’autres personnes et d’autres extraits ; si le modèle ne peut être estimé l’hypothèse est tenue pour indécise"),
+        );
+    }
     language.pick(
         format!("{name}, fitted by restricted maximum likelihood with independent random effects of people and of segments, of both with each level (and combination of levels), and of people with segments, so that it holds for other people and other clips; a random effect that parts the answers as another one does is left out; pairs by t, corrected by Holm; where the model cannot be estimated, Clark’s min F' decides, and where that is undefined too the hypothesis counts as not shown; beside it, of ratings, a cumulative mixed model"),
         format!("{name}, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires indépendants des personnes et des segments, de chacun à chaque niveau (et combinaison de niveaux), et des personnes pour chaque segment, de sorte qu’il vaut pour d’autres personnes et d’autres extraits ; un effet aléatoire qui partage les réponses comme un autre est omis ; paires par t, corrigées par Holm ; si le modèle ne peut être estimé, le min F' de Clark décide, et s’il n’est pas défini non plus l’hypothèse est tenue pour non montrée ; à côté, pour des notes, un modèle mixte cumulatif"),

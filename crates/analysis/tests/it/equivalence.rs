@@ -44,13 +44,45 @@ fn verdicts_follow_the_difference_that_was_planted() {
         (5, 0.0, 0.1, "undecided", "undecided: neither"),
     ] {
         let found = hypothesis(&report(&study(smallest), people, effect, Language::English));
-        assert_eq!(found["equivalence"]["decides"]["verdict"], verdict, "{found}");
-        assert_eq!(found["equivalence"]["beside"]["verdict"], verdict, "{found}");
+        assert_eq!(found["equivalence"]["by_ranks"]["verdict"], verdict, "{found}");
+        assert_eq!(found["equivalence"]["by_t"]["verdict"], verdict, "{found}");
         let reading = found["reading"].as_str().unwrap();
         assert!(reading.contains(words), "{reading}");
         assert!(reading.contains("Beside it two one-sided paired t tests"), "{reading}");
         // What decides goes into the correction over all hypotheses.
-        assert_eq!(found["p"], found["equivalence"]["decides"]["line"]["p_value"]);
+        assert_eq!(found["p"], found["equivalence"]["by_ranks"]["line"]["p_value"]);
+    }
+}
+
+#[test]
+fn for_other_clips_the_linear_mixed_model_decides() {
+    for (effect, smallest, verdict, words) in [
+        (0.0, 0.8, "equivalent", "are equivalent: they differ by less than 0.8 points"),
+        (1.5, 0.5, "different", "differ, and that by less than 0.5 points"),
+    ] {
+        let mut study = study(smallest);
+        study.hypotheses[0].generalise = None;
+        let report = report(&study, 60, effect, Language::English);
+        let found = hypothesis(&report);
+        let own = &found["equivalence"]["for_other_clips"];
+        assert_eq!(own["verdict"], verdict, "{found}");
+        assert_eq!(found["scope"], "other_clips");
+        assert_eq!(found["p"], own["p"]);
+        // Of two levels F is t squared.
+        let difference = own["p_difference"].as_f64().unwrap();
+        let of_model = found["other_clips"]["linear_model"]["p"].as_f64().unwrap();
+        assert!((difference - of_model).abs() < 1e-9, "{difference} {of_model}");
+        assert!(own["se"].as_f64() > Some(0.0));
+        let reading = found["reading"].as_str().unwrap();
+        assert!(reading.starts_with("For other clips, on “"), "{reading}");
+        assert!(reading.contains(words) && reading.contains("Of these clips alone:"), "{reading}");
+        let table = file(&report, "tables/hypothesis-e1-equivalence.csv");
+        assert!(table.contains("two one-sided t tests of the linear mixed model, for other clips"));
+        let zone = file(&report, "figures/hypothesis-e1-zone.svg");
+        assert!(zone.contains("linear mixed model, other clips"), "{zone}");
+        let paper = file(&report, "report.html");
+        assert!(paper.contains("two one-sided t tests of the difference in a linear mixed model"));
+        assert!(!paper.contains("has shown no effect of"), "F is not the test of equivalence");
     }
 }
 
@@ -124,7 +156,7 @@ fn groups_of_people_are_compared_by_rank_sums() {
     let people = &found["equivalence"]["people"];
     assert_eq!((people[0].as_u64(), people[1].as_u64()), (Some(20), Some(20)), "{found}");
     assert_eq!(found["equivalence"]["within_people"], false);
-    assert!(found["equivalence"]["beside"]["interval_90"].is_array());
+    assert!(found["equivalence"]["by_t"]["interval_90"].is_array());
     assert!(found["reading"].as_str().unwrap().contains("Welch"), "{found}");
 }
 
@@ -143,7 +175,7 @@ fn the_p_next_to_a_decision_is_the_p_of_that_decision() {
         let table = Table::parse(csv.as_bytes()).unwrap();
         let report = analyze(&table, &study, Language::English).unwrap();
         let found = hypothesis(&report);
-        let p = found["equivalence"]["decides"]["p_difference"].as_f64().unwrap();
+        let p = found["equivalence"]["by_ranks"]["p_difference"].as_f64().unwrap();
         let corrected = found["p_difference_holm_over_hypotheses"].as_f64().unwrap();
         assert!((corrected - (4.0 * p).min(1.0)).abs() < 1e-12, "{p} {corrected}");
         let row = file(&report, "tables/hypotheses.csv").lines().nth(1).unwrap();
@@ -200,14 +232,14 @@ fn power_is_that_at_no_difference_and_is_preregistered() {
     let found = power(&study, "hash", &parameters, &options(30), &|| {}).unwrap();
     let first = &found.points[0].hypotheses[0];
     assert!(first.effect && first.false_positives.is_none());
-    assert!(first.power.recommended.share > 0.8, "{:?}", first.power.recommended);
+    assert!(first.power.deciding.share > 0.8, "{:?}", first.power.deciding);
     parameters.ratings.get_mut("believability").unwrap().effects.clear();
     let without = power(&study, "hash", &parameters, &options(30), &|| {}).unwrap();
     assert_eq!(without.points[0].hypotheses[0].power, first.power);
     // A zone that is hardly wider than chance needs more people.
     study.hypotheses[0].smallest_effect = Some(0.05);
     let narrow = power(&study, "hash", &parameters, &options(8), &|| {}).unwrap();
-    assert!(narrow.points[0].hypotheses[0].power.recommended.share < 0.2);
+    assert!(narrow.points[0].hypotheses[0].power.deciding.share < 0.2);
     for (language, words) in [
         (
             Language::English,

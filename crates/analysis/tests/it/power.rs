@@ -2,8 +2,8 @@
 //! power of a test whose distribution is known.
 
 use mimique_analysis::{
-    Parameters, Power, PowerOptions, PrecisionPoint, Preregistration, as_predicted, power,
-    power_markdown, power_runs, precision_csv, preregistration,
+    ClipScope, EffectUnit, Parameters, Power, PowerOptions, PrecisionPoint, Preregistration,
+    as_predicted, power, power_markdown, power_runs, precision_csv, preregistration,
 };
 use mimique_locale::Language;
 use mimique_study::{Generalise, StraightLining, Study};
@@ -53,11 +53,11 @@ fn trials_taken_for_independent_find_what_is_not_there() {
         let [method, group] = point.hypotheses.as_slice() else { panic!("two hypotheses") };
         let share = method.power.as_in_the_thesis.share;
         assert!((share - expected).abs() < 0.03, "method, sd {taste}: {share}");
-        let share = method.power.recommended.share;
+        let share = method.power.deciding.share;
         assert!((0.04..=0.06).contains(&share), "method, recommended, sd {taste}: {share}");
         let share = group.power.as_in_the_thesis.share;
         assert!((share - 0.6).abs() < 0.05, "group, sd {taste}: {share}");
-        let share = group.power.recommended.share;
+        let share = group.power.deciding.share;
         assert!((0.035..=0.06).contains(&share), "group, recommended, sd {taste}: {share}");
     }
 }
@@ -104,7 +104,7 @@ fn power_is_that_of_the_paired_test() {
         let z = (critical * (1.0 - 1.0 / (4.0 * degrees)) - noncentrality)
             / (1.0 + critical * critical / (2.0 * degrees)).sqrt();
         let expected = mimique_stats::normal_upper(z).p;
-        let found = h3.power.recommended.share;
+        let found = h3.power.deciding.share;
         assert!(
             (found - expected).abs() < 0.05,
             "{} people: {found}, {expected}",
@@ -112,9 +112,36 @@ fn power_is_that_of_the_paired_test() {
         );
     }
     assert!(
-        result.points[1].hypotheses[2].power.recommended.share
-            > result.points[0].hypotheses[2].power.recommended.share
+        result.points[1].hypotheses[2].power.deciding.share
+            > result.points[0].hypotheses[2].power.deciding.share
     );
+}
+
+#[test]
+fn the_smallest_difference_is_detected_four_times_in_five() {
+    let (mut study, hash) = study("power/verdicts.json");
+    study.hypotheses.truncate(1);
+    let mut parameters = Parameters::for_study(&study);
+    parameters.careless.share = 0.0;
+    let rating = parameters.ratings.get_mut("rating").unwrap();
+    (rating.mean, rating.noise_sd, rating.clip_sd) = (4.0, 1.0, 0.2);
+    rating.interactions.clear();
+    rating.effects.clear();
+    let options = PowerOptions { clips: vec![24], ..options(&[20], 60) };
+    let none = power(&study, &hash, &parameters, &options, &|| {}).unwrap();
+    let found = &none.points[0].hypotheses[0];
+    assert_eq!(found.scope, ClipScope::Others);
+    let smallest = found.smallest_difference.unwrap();
+    assert_eq!(smallest.unit, EffectUnit::Points);
+    let rating = parameters.ratings.get_mut("rating").unwrap();
+    let half = smallest.value / 2.0;
+    let shifts = [("lsts30", half), ("box", -half)].map(|(level, own)| (level.to_owned(), own));
+    rating.effects = [("method".to_owned(), shifts.into_iter().collect())].into_iter().collect();
+    let options = PowerOptions { runs: 500, ..options };
+    let with = power(&study, &hash, &parameters, &options, &|| {}).unwrap();
+    let share = with.points[0].hypotheses[0].power.deciding.share;
+    // Four standard errors of 500 runs and the average of the standard errors.
+    assert!((share - 0.8).abs() < 0.09, "{share} at {}", smallest.value);
 }
 
 #[test]
@@ -130,14 +157,14 @@ fn without_effects_there_is_none_left() {
     options.false_positives = true;
     let result = power(&study, &hash, &parameters, &options, &|| {}).unwrap();
     for hypothesis in &result.points[0].hypotheses {
-        let rate = hypothesis.false_positives.unwrap().recommended;
+        let rate = hypothesis.false_positives.unwrap().deciding;
         // 5 % with a standard error of 0.8 %; the exact tests stay below.
         assert!((0.015..0.08).contains(&rate.share), "{}: {}", hypothesis.id, rate.share);
         // The aligned rank transform of an interaction, and exact tests, stay near what they say.
         assert!(rate.interval[0] < rate.share && rate.share < rate.interval[1]);
     }
     let believability = &result.points[0].hypotheses[2];
-    assert!(believability.power.recommended.share > 0.3, "{believability:?}");
+    assert!(believability.power.deciding.share > 0.3, "{believability:?}");
 }
 
 /// Where the parameters hold no effect (a typed number never has one), the share of positive tests is no

@@ -607,7 +607,7 @@ RatingOfPair { question: String, factor: String, clip: String, beside: String }:
     "\"{question}\" rates two clips together that differ in \"{factor}\", such as \"{clip}\" beside \"{beside}\": which of them is meant nobody knows",
     "ask it in trials of one clip, or beside one and the same {factor} that is not compared; or ask which is better by a question of type \"comparison\"";
 NotOfOtherClips { hypothesis: String }: "not-a-number",
-    "\"{hypothesis}\" tests a correlation or an equivalence, which are decided for these clips alone",
+    "\"{hypothesis}\" tests a correlation, which is decided for these clips alone",
     "take a test such as \"wilcoxon\" or \"friedman\", or leave out \"generalise\"";
 TooFewSegments { segments: Counted, needed: usize }: "wrong-length",
     "{segments}, of which a mixed model cannot tell how far others would differ",

@@ -101,10 +101,10 @@ impl TestName {
         matches!(self, Self::KruskalWallis | Self::Wilcoxon | Self::MannWhitney | Self::Friedman)
     }
 
-    /// Whether there is a test of it that is about other clips too: of levels that are compared, of interactions and of
-    /// choices.
+    /// Whether there is a test of it that is about other clips too: of levels that are compared, of their equivalence, of
+    /// interactions and of choices.
     pub fn holds_for_other_clips(self) -> bool {
-        !matches!(self, Self::Spearman | Self::Equivalence)
+        self != Self::Spearman
     }
 
     /// As a study file writes it.

@@ -23,7 +23,9 @@ use crate::naming::people_counted;
 use crate::trials::measure::MeasureKind;
 pub(crate) use decision::{deciding_p, decision_of, mark, supports};
 pub(crate) use detection::d_prime_by;
-pub(crate) use equivalence::{equivalence, verdict};
+pub(crate) use equivalence::{
+    equivalence, equivalence_by_model, equivalence_for_other_clips, equivalence_t, verdict,
+};
 pub(crate) use matching::{unequal_exclusion, unmatched};
 pub(crate) use other_clips::{f_of, other_clips};
 use pairs::{each_pair, many_pairs, topic};

@@ -40,8 +40,10 @@ impl Collector {
                     Some(DecidingTest::LinearModel(model)) => {
                         let key = format!("{key}:other clips");
                         let name = LinearMixedModel::NAMES.function;
-                        let call = Call::new(Design::Given, name).given(model.p);
-                        all.checks.push(Check::new(key.clone(), call, vec![("p", model.p)]));
+                        // Of a hypothesis of equivalence p is that of two one-sided tests of the model's difference.
+                        let p = result.equivalence.as_ref().and(result.p).unwrap_or(model.p);
+                        let call = Call::new(Design::Given, name).given(p);
+                        all.checks.push(Check::new(key.clone(), call, vec![("p", p)]));
                         Some(key)
                     }
                     Some(DecidingTest::MinF(_)) => Some(format!("{key}:min F'")),
@@ -49,7 +51,7 @@ impl Collector {
                 };
             }
             if let Some(found) = &result.equivalence {
-                all.line(format!("{key}:beside"), &found.beside.line);
+                all.line(format!("{key}:beside"), &found.by_t.line);
             }
             if let (Some(p_holm), Some(deciding)) = (result.p_holm_over_hypotheses, deciding) {
                 decided.of.push(deciding);
@@ -57,7 +59,7 @@ impl Collector {
                 decided.p_holm.push(p_holm);
                 decided.hypothesis.push(place);
             }
-            let difference = result.equivalence.as_ref().and_then(|own| own.decides.p_difference);
+            let difference = result.p_difference();
             if let (Some(p), Some(p_holm)) = (difference, result.p_difference_holm_over_hypotheses)
             {
                 let key = format!("{key}:difference");

@@ -2,6 +2,7 @@
 //! matter.
 
 use mimique_report::document::{Block, DataTable, slug};
+use mimique_stats::EquivalenceT;
 
 use crate::hypothesis::HypothesisResult;
 use crate::hypothesis::equivalence::{Equivalence, OneSidedTests};
@@ -24,17 +25,26 @@ impl Writer<'_> {
     pub(crate) fn equivalence_zone(&mut self, result: &HypothesisResult) {
         let Some(found) = &result.equivalence else { return };
         let language = self.language();
-        let names = language.pick(
-            ["Hodges-Lehmann difference", "mean difference"],
-            ["différence de Hodges-Lehmann", "différence moyenne"],
+        let [of_model, of_ranks, of_t] = language.pick(
+            ["linear mixed model, other clips", "Hodges-Lehmann difference", "mean difference"],
+            [
+                "modèle linéaire mixte, autres extraits",
+                "différence de Hodges-Lehmann",
+                "différence moyenne",
+            ],
         );
-        let intervals: Vec<EquivalenceInterval> = names
+        let model = found.for_other_clips.map(|own| (of_model, own.difference, own.interval_90));
+        let tests = [(of_ranks, &found.by_ranks), (of_t, &found.by_t)];
+        let tests = tests
             .into_iter()
-            .zip([&found.decides, &found.beside])
-            .filter_map(|(label, tests)| {
-                let ends = tests.interval_90?.map(|end| scaled(result.kind, end));
-                let estimate = scaled(result.kind, tests.estimate?);
-                Some(EquivalenceInterval { label, estimate, ends })
+            .filter_map(|(label, own)| Some((label, own.estimate?, own.interval_90?)));
+        let intervals: Vec<EquivalenceInterval> = model
+            .into_iter()
+            .chain(tests)
+            .map(|(label, estimate, ends)| EquivalenceInterval {
+                label,
+                estimate: scaled(result.kind, estimate),
+                ends: ends.map(|end| scaled(result.kind, end)),
             })
             .collect();
         if intervals.is_empty() {
@@ -91,21 +101,48 @@ impl Writer<'_> {
         );
         let id = format!("hypothesis-{}-equivalence", slug(&result.id));
         let mut table = DataTable::new(id, caption, heading);
-        for tests in [&found.decides, &found.beside] {
+        if let Some(own) = &found.for_other_clips {
+            table.row(self.row_for_other_clips(result.kind, own));
+        }
+        for tests in [&found.by_ranks, &found.by_t] {
             table.row(self.equivalence_row(result.kind, tests));
         }
         table
+    }
+
+    fn row_for_other_clips(&self, kind: MeasureKind, own: &EquivalenceT) -> [String; 5] {
+        let language = self.language();
+        let name = reading::equivalence_by_model(language);
+        [
+            language.pick(
+                format!("{name}, for other clips"),
+                format!("{name}, pour d’autres extraits"),
+            ),
+            language.p_cell(own.p, own.ln_p),
+            self.difference_with_interval(kind, own.difference, own.interval_90),
+            language.p_cell(own.p_difference, own.p_difference.ln()),
+            reading::verdict(language, own.verdict).to_owned(),
+        ]
+    }
+
+    fn difference_with_interval(
+        &self,
+        kind: MeasureKind,
+        estimate: f64,
+        [low, high]: [f64; 2],
+    ) -> String {
+        let language = self.language();
+        let [estimate, low, high] =
+            [estimate, low, high].map(|value| reading::difference(language, kind, value));
+        format!("{estimate} [{low}; {high}]")
     }
 
     fn equivalence_row(&self, kind: MeasureKind, tests: &OneSidedTests) -> [String; 5] {
         let language = self.language();
         let [test, p, _] = tables::cells(language, &tests.line);
         let name = tests.line.clone().ok().map(|line| line.names.in_words[language.pick(0, 1)]);
-        let interval = tests.estimate.zip(tests.interval_90).map(|(estimate, [low, high])| {
-            let [estimate, low, high] =
-                [estimate, low, high].map(|value| reading::difference(language, kind, value));
-            format!("{estimate} [{low}; {high}]")
-        });
+        let interval = tests.estimate.zip(tests.interval_90);
+        let interval = interval.map(|(own, ends)| self.difference_with_interval(kind, own, ends));
         [
             name.map_or(test, str::to_owned),
             p,

@@ -28,9 +28,8 @@ pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
             )
         })
         .collect();
-    let difference = |result: &HypothesisResult| result.equivalence.as_ref()?.decides.p_difference;
     let p: Vec<[Option<f64>; 2]> =
-        results.iter().map(|result| [result.p, difference(result)]).collect();
+        results.iter().map(|result| [result.p, result.p_difference()]).collect();
     let tested = results.iter().filter(|result| result.p.is_some()).count();
     for (result, [corrected, difference]) in results.iter_mut().zip(family::corrected(&p)) {
         result.p_holm_over_hypotheses = corrected;

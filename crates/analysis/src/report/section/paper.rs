@@ -106,6 +106,11 @@ impl Writer<'_> {
                         "modèle linéaire des choix (1/2 pour l’extrait de gauche, −1/2 pour celui de droite, 0 pour aucun ; Scheffé, 1952), ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des participants à chaque niveau et des segments à chaque niveau, aux degrés de liberté de Satterthwaite",
                     )
                     .to_owned(),
+                    Some(DecidingTest::LinearModel(_)) if result.equivalence.is_some() => language.pick(
+                        "two one-sided t tests of the difference in a linear mixed model, fitted by restricted maximum likelihood with random effects of participants, of segments, of both at each level, and of participants for each segment, with Satterthwaite’s degrees of freedom",
+                        "deux tests t unilatéraux de la différence dans un modèle linéaire mixte, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des segments, de chacun à chaque niveau, et des participants pour chaque segment, aux degrés de liberté de Satterthwaite",
+                    )
+                    .to_owned(),
                     Some(DecidingTest::LinearModel(_)) => language.pick(
                         "linear mixed model, fitted by restricted maximum likelihood with random effects of participants, of segments, of both at each level, and of participants for each segment, with Satterthwaite’s degrees of freedom",
                         "modèle linéaire mixte, ajusté par maximum de vraisemblance restreinte avec des effets aléatoires des participants, des segments, de chacun à chaque niveau, et des participants pour chaque segment, aux degrés de liberté de Satterthwaite",
@@ -251,7 +256,11 @@ impl Writer<'_> {
         });
         let p: Vec<String> = p.collect();
         let decides = result.other_clips.as_ref().filter(|found| found.decides);
-        if let Some(test) = decides.and_then(OtherClips::deciding_test) {
+        let equivalence = result.equivalence.as_ref().and_then(|found| found.for_other_clips);
+        if let Some(tests) = equivalence {
+            parts.push(reading::equivalence_t(language, &tests));
+            parts.extend(p);
+        } else if let Some(test) = decides.and_then(OtherClips::deciding_test) {
             match test {
                 DecidingTest::LinearModel(model) => {
                     let f = reading::f_of(language, model);

@@ -13,7 +13,7 @@ pub fn equivalence(
 ) -> Hypothesis {
     serde_json::from_value(json!({
         "id": id, "statement": { "en": "Alike.", "fr": "Pareils." }, "test": "equivalence", "response": response,
-        "factors": [factor], "levels": levels, "smallestEffect": smallest,
+        "factors": [factor], "levels": levels, "smallestEffect": smallest, "generalise": "these clips",
         "smallestEffectReason": { "en": "nobody sees it", "fr": "personne ne le voit" },
     }))
     .unwrap()

@@ -273,6 +273,21 @@ fn larger(lower: Tail, upper: Tail) -> Tail {
     if lower.ln_p > upper.ln_p { lower } else { upper }
 }
 
+impl EquivalenceT {
+    /// The tests of a difference that is known up to a standard error with t's distribution of `df` degrees of freedom.
+    ///
+    /// Refuses bounds that are no interval. Undefined where the standard error is 0.
+    pub fn of(
+        difference: f64,
+        se: f64,
+        df: f64,
+        options: &EquivalenceOptions,
+    ) -> Result<Outcome<Self>, Refusal> {
+        options.check()?;
+        Ok(t_tests(difference, se, df, options))
+    }
+}
+
 fn t_tests(
     difference: f64,
     se: f64,

@@ -1,6 +1,7 @@
 //! Agreement with R, planted parameters, false positives, invariance, and what is undefined.
 
 use super::*;
+use crate::test::equivalence::{EquivalenceOptions, EquivalenceT};
 use mimique_test_support::Random;
 
 fn factor(name: &str, codes: &[u32]) -> Factor {
@@ -168,6 +169,23 @@ fn false_positives_keep_to_five_percent() {
         // Of 400 draws of 5 % 29 are as many as in 99 % of cases.
         assert!(positive <= 31, "{size:?} {sds:?}: {positive} of {rounds}");
     }
+}
+
+/// Where two levels differ by exactly the smallest effect that matters, they are called equivalent in at most 5 % of studies.
+#[test]
+fn equivalence_at_the_smallest_effect_keeps_to_five_percent_where_clips_differ() {
+    let mut random = Random::new(17);
+    let (rounds, options) = (300, EquivalenceOptions::smallest_effect(0.5));
+    let mut equivalent = 0;
+    for _ in 0..rounds {
+        let data = planted([40, 8], &[0.0, 0.5], [0.5, 0.2, 0.5, 0.2, 0.8], 0.95, &mut random);
+        let found = fitted(&data);
+        let [pair] = found.pairs.as_slice() else { panic!("one pair") };
+        let tests = EquivalenceT::of(pair.difference, pair.se, pair.df, &options);
+        equivalent += usize::from(tests.unwrap().ok().unwrap().p < 0.05);
+    }
+    // Of 300 draws of 5 % 24 are as many as in 99 % of cases.
+    assert!((3..=24).contains(&equivalent), "{equivalent} of {rounds}");
 }
 
 #[test]
