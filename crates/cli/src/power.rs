@@ -276,7 +276,7 @@ fn of_clips(out: &mut impl std::io::Write, power: &Power, place: usize) -> std::
     let name = if mixed { "linear mixed model" } else { "" };
     write!(
         out,
-        "other clips too\n{:>7} {:>8}  {:<22} {name:<22}",
+        "for other clips\n{:>7} {:>8}  {:<22} {name:<22}",
         "people", "segments", "power, min F'"
     )?;
     writeln!(

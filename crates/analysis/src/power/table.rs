@@ -179,7 +179,7 @@ fn of_clips(power: &Power, place: usize, language: Language) -> String {
     if falsely {
         heading.extend(&false_names[..count]);
     }
-    let caption = language.pick("Other clips too:", "D’autres extraits aussi\u{a0}:");
+    let caption = language.pick("For other clips:", "Pour d’autres extraits\u{a0}:");
     let _ = writeln!(text, "{caption}\n\n| {} |", heading.join(" | "));
     let _ = writeln!(text, "|{}", "---:|".repeat(heading.len()));
     for point in &power.points {

@@ -205,8 +205,8 @@ pub(crate) fn other_clips(
 ) -> DataTable {
     let language = naming.language;
     let heading = language.pick(
-        ["Other clips too", "test", "p", "effect [95 %]", "first is higher of two"],
-        ["D’autres extraits aussi", "test", "p", "effet [95 %]", "la première plus haute de deux"],
+        ["For other clips", "test", "p", "effect [95 %]", "first is higher of two"],
+        ["Pour d’autres extraits", "test", "p", "effet [95 %]", "la première plus haute de deux"],
     );
     let mut table = DataTable::new(id, caption, heading);
     let whole = naming.factor(factor);

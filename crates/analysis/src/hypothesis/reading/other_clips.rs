@@ -23,14 +23,14 @@ pub(crate) fn other_clips(
     let language = naming.language;
     let mut sentences = vec![language.pick(
         if found.decides {
-            "Other clips too, which decides this hypothesis:"
+            "For other clips, which decides this hypothesis:"
         } else {
-            "The tests before this take the clips as they are. Other clips too:"
+            "The tests before this take the clips as they are. For other clips:"
         },
         if found.decides {
-            "D’autres extraits aussi, ce qui décide de cette hypothèse :"
+            "Pour d’autres extraits, ce qui décide de cette hypothèse :"
         } else {
-            "Les tests qui précèdent prennent les extraits tels qu’ils sont. D’autres extraits aussi :"
+            "Les tests qui précèdent prennent les extraits tels qu’ils sont. Pour d’autres extraits :"
         },
     )
     .to_owned()];

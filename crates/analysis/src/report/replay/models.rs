@@ -66,7 +66,7 @@ fn of_hypotheses(writer: &Writer<'_>) -> String {
         let (Some(found), Some(factor)) = (&result.other_clips, result.factors.first()) else {
             continue;
         };
-        let title = format!("Other clips too, hypothesis {}", result.id);
+        let title = format!("For other clips, hypothesis {}", result.id);
         let (measure, of_clips) = (quoted(&result.measure), quoted(factor));
         let levels: Vec<String> = found.levels.iter().map(|level| quoted(level)).collect();
         let levels = levels.join(", ");
