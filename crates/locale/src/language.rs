@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn only_the_last_item_of_a_list_follows_an_and() {
-        assert_eq!(Language::English.list::<&str>(&[]), "");
+        assert_eq!(Language::English.list(&[""; 0]), "");
         assert_eq!(Language::English.list(&["a"]), "a");
         assert_eq!(Language::English.list(&["a", "b"]), "a and b");
         assert_eq!(Language::French.list(&["a", "b", "c", "d"]), "a, b, c et d");

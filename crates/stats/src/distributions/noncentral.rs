@@ -22,9 +22,21 @@ fn normal_below(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// P(T <= t) of the noncentral t with `df` > 0 degrees of freedom: the integral of Φ(t s - ncp) over the density of
-/// s = sqrt(chi-square / df) (Johnson, Kotz and Balakrishnan 1995, volume 2, equation 31.10). Absolute error below 1e-11.
-pub(crate) fn noncentral_t_below(t: f64, df: f64, ncp: f64) -> f64 {
+/// P(T <= t) of the noncentral t with `df` > 0 degrees of freedom, by [`scale_nodes`]. Absolute error below 1e-11.
+#[cfg(test)]
+fn noncentral_t_below(t: f64, df: f64, ncp: f64) -> f64 {
+    below_at(&scale_nodes(t, df), ncp)
+}
+
+/// The same from the nodes of t.
+fn below_at(nodes: &[[f64; 2]], ncp: f64) -> f64 {
+    let sum: f64 = nodes.iter().map(|[scaled, weight]| weight * normal_below(scaled - ncp)).sum();
+    sum.clamp(0.0, 1.0)
+}
+
+/// Values of t s and their probabilities, over which Φ(t s - ncp) is summed in the place of its integral over the density
+/// of s = sqrt(chi-square / df) (Johnson, Kotz and Balakrishnan 1995, volume 2, equation 31.10).
+fn scale_nodes(t: f64, df: f64) -> Vec<[f64; 2]> {
     let half = df / 2.0;
     let ln_front = std::f64::consts::LN_2 + half * libm::log(half) - libm::lgamma(half);
     let density = |s: f64| libm::exp(ln_front + (df - 1.0) * libm::log(s) - half * s * s);
@@ -33,25 +45,26 @@ pub(crate) fn noncentral_t_below(t: f64, df: f64, ncp: f64) -> f64 {
     // Φ(t s - ncp) rises over a width of 1 / |t|: four panels per width, eight at least.
     let panels = (4.0 * (to - from) * t.abs()).clamp(8.0, 512.0).ceil();
     let width = (to - from) / panels;
-    let mut sum = 0.0;
+    let mut nodes = Vec::with_capacity(10 * panels as usize);
     for panel in 0..panels as usize {
         let centre = from + (panel as f64 + 0.5) * width;
         for [node, weight] in LEGENDRE {
             for s in [centre - node * width / 2.0, centre + node * width / 2.0] {
-                sum += weight * density(s) * normal_below(t * s - ncp);
+                nodes.push([t * s, weight * width / 2.0 * density(s)]);
             }
         }
     }
-    (sum * width / 2.0).clamp(0.0, 1.0)
+    nodes
 }
 
 /// The noncentralities at which a t with `df` degrees of freedom is the upper and the lower 2.5 % point: a 95 % interval
 /// (Steiger and Fouladi 1997; Cumming and Finch 2001, "pivoting the noncentral t").
 pub(crate) fn noncentrality_of_t(t: f64, df: f64) -> [f64; 2] {
     let reach = normal_quantile_upper(0.025) * (1.0 + t * t / (2.0 * df)).sqrt();
+    let nodes = scale_nodes(t, df);
     [0.975, 0.025].map(|below| {
         let towards = if below > 0.5 { t - reach } else { t + reach };
-        falling_root(|ncp| noncentral_t_below(t, df, ncp) - below, towards, reach)
+        falling_root(|ncp| below_at(&nodes, ncp) - below, towards, reach)
     })
 }
 

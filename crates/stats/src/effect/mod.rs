@@ -53,7 +53,7 @@ impl EffectSizeKind {
         match self {
             Self::CohenDz => "d_z",
             Self::PairedDominance => "d_w",
-            Self::CliffDelta => "δ",
+            Self::CliffDelta => "delta",
             Self::KendallW => "W",
             Self::SpearmanRho => "rho",
             Self::PearsonR => "r",
