@@ -47,6 +47,27 @@ impl Language {
         }
     }
 
+    /// Items as one phrase, without a comma before the last: `a`, `a and b`, `a, b and c`; in French with `et`. Empty
+    /// without items.
+    ///
+    /// ```
+    /// use mimique_locale::Language;
+    ///
+    /// assert_eq!(Language::English.list(&["joy", "fear", "anger"]), "joy, fear and anger");
+    /// assert_eq!(Language::French.list(&["joie", "peur"]), "joie et peur");
+    /// ```
+    pub fn list(self, items: &[impl AsRef<str>]) -> String {
+        let mut text = String::new();
+        for (place, item) in items.iter().enumerate() {
+            if place > 0 {
+                let is_last = place + 1 == items.len();
+                text.push_str(if is_last { self.pick(" and ", " et ") } else { ", " });
+            }
+            text.push_str(item.as_ref());
+        }
+        text
+    }
+
     /// A number with this language's decimal mark.
     pub fn number(self, value: f64) -> String {
         self.mark(format_number(value))
@@ -132,6 +153,14 @@ mod tests {
         assert_eq!(english.p_rounded(0.0504), "0.0504");
         assert_eq!(french.p_cell(0.000_012_3, 0.000_012_3_f64.ln()), "1,2e-5");
         assert_eq!(english.p_cell(0.0, -2000.0), "2.58e-869");
+    }
+
+    #[test]
+    fn only_the_last_item_of_a_list_follows_an_and() {
+        assert_eq!(Language::English.list(&[""; 0]), "");
+        assert_eq!(Language::English.list(&["a"]), "a");
+        assert_eq!(Language::English.list(&["a", "b"]), "a and b");
+        assert_eq!(Language::French.list(&["a", "b", "c", "d"]), "a, b, c et d");
     }
 
     #[test]

@@ -19,6 +19,7 @@
 
 mod adjust;
 mod distributions;
+mod effect;
 mod estimate;
 mod numerics;
 mod outcome;
@@ -35,6 +36,10 @@ pub use distributions::tail::{
     Alternative, Tail, beta_quantile, binomial_half_at_least, chi_square_upper, f_quantile,
     f_upper, normal_quantile_upper, normal_tail, normal_upper, t_quantile_upper, t_two_sided,
     t_upper,
+};
+pub use effect::{
+    EffectSize, EffectSizeKind, cliff_delta, kendall_w_interval, paired_dominance,
+    standardised_difference,
 };
 pub use estimate::hodges_lehmann::HodgesLehmann;
 pub use estimate::proportion::{Proportion, proportion};
@@ -115,7 +120,7 @@ pub use test::reverse_correlation::{
 pub use test::roc::{CategoryRoc, PersonArea, Roc, RocCurve, roc};
 pub use test::scheirer_ray_hare::{ScheirerRayHare, SrhTable, SumsOfSquares, scheirer_ray_hare};
 pub use test::sign::{Sign, sign};
-pub use test::spearman::{Spearman, bonett_wright_interval, spearman};
+pub use test::spearman::{Spearman, bonett_wright_interval, fisher_interval, spearman};
 pub use test::thurstone::{Thurstone, thurstone};
 pub use test::wilcoxon::{Wilcoxon, WilcoxonOptions, WilcoxonVariant, wilcoxon};
 pub use undefined::{NoEstimate, Undefined};

@@ -1,6 +1,6 @@
 //! What the report says of blocks of reverse correlation.
 
-use mimique_locale::{counted, counted_in_french};
+use mimique_locale::{Language, counted, counted_in_french};
 use mimique_report::document::{Block, DataTable, Figure, slug};
 use mimique_stats::{CategoryImages, GroupImage, UnitCourse};
 
@@ -139,13 +139,13 @@ impl Writer<'_> {
                 "Heat map of {} action units by {} times. Significant at some time: {}.",
                 group.units.len(),
                 found.images.times_s.len(),
-                listed(&framed, "none")
+                listed(language, &framed, "none")
             ),
             format!(
                 "Carte de {} unités d’action par {} moments. Significatives à un moment : {}.",
                 group.units.len(),
                 found.images.times_s.len(),
-                listed(&framed, "aucune")
+                listed(language, &framed, "aucune")
             ),
         );
         self.figure(Figure { id, caption, alt, svg, data });
@@ -256,6 +256,6 @@ fn played_id(figure: &str) -> String {
     format!("{}_played", figure.replace('-', "_"))
 }
 
-fn listed(names: &[&str], none: &str) -> String {
-    if names.is_empty() { none.to_owned() } else { names.join(", ") }
+fn listed(language: Language, names: &[&str], none: &str) -> String {
+    if names.is_empty() { none.to_owned() } else { language.list(names) }
 }

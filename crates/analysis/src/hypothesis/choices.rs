@@ -73,6 +73,7 @@ pub(super) fn of_choices(
         equivalence: None,
         preference: preferred,
         matching: None,
+        answer_distributions: Vec::new(),
         trials_without_level: 0,
         people_by_condition: Labelled::default(),
         p_holm_over_hypotheses: None,

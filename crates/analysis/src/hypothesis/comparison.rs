@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::hypothesis::person_level::{self, PersonLevel};
 use crate::hypothesis::trial_level::{self, TrialLevel};
+use crate::trials::answer_distribution::AnswerDistribution;
 use crate::trials::export::Export;
 use crate::trials::matching::Matching;
 use crate::trials::measure::{Measure, MeasureKind};
@@ -25,6 +26,8 @@ pub(crate) struct Comparison {
     pub person_means: Labelled<Option<f64>>,
     pub as_in_the_thesis: TrialLevel,
     pub recommended: PersonLevel,
+    /// How answers are distributed at each level.
+    pub answer_distribution: AnswerDistribution,
     /// Which answers are compared within people, and how many remain.
     pub matching: Matching,
 }
@@ -55,6 +58,7 @@ pub(crate) fn within(export: &Export, measure: &Measure, factor: &Factor) -> Com
         ),
         as_in_the_thesis: TrialLevel::new(tests),
         recommended: person_level::within_matched(export, measure, factor, &matching),
+        answer_distribution: AnswerDistribution::of(measure, factor),
         matching,
     }
 }

@@ -33,6 +33,8 @@ use crate::hypothesis::test_line::{OutcomeP, TestLine, Unit};
 use crate::hypothesis::trial_level::TrialLevel;
 use crate::hypothesis::undefined::TestOutcome;
 use crate::naming::Naming;
+use crate::report::section::MOST_LEVELS;
+use crate::trials::answer_distribution::AnswerDistribution;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 use crate::trials::matching::Matching;
@@ -64,6 +66,9 @@ pub(crate) struct HypothesisResult {
     /// Which answers are compared, where the first factor is one of the clips.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matching: Option<Matching>,
+    /// How answers are distributed at the levels of each factor that is tested.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub answer_distributions: Vec<AnswerDistribution>,
     /// Trials without a value of a factor, such as those of a method without that parameter: not used.
     pub trials_without_level: usize,
     /// The people of each condition compared, where the assigned condition is a factor.
@@ -199,6 +204,15 @@ pub(crate) fn test_hypothesis(
         conditions::people(export, study, hypothesis, measure)
     });
     reading += &conditions::words(naming, &people_by_condition, kind);
+    let distributions =
+        measure.as_ref().map_or_else(Vec::new, |own| distributions(export, study, hypothesis, own));
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let sizes = reading::effect_sizes(naming, &people, factor);
+    let spoken = distributions.iter().filter_map(|own| reading::distribution(naming, own, kind));
+    for words in sizes.into_iter().chain(spoken) {
+        reading.push(' ');
+        reading += &words;
+    }
     HypothesisResult {
         id: hypothesis.id.clone(),
         statement: hypothesis.statement.in_language(language.code()).to_owned(),
@@ -208,6 +222,7 @@ pub(crate) fn test_hypothesis(
         factors: hypothesis.factors.clone(),
         scope,
         matching,
+        answer_distributions: distributions,
         trials_without_level,
         people_by_condition,
         as_in_the_thesis: TrialLevel::new(trials),
@@ -272,6 +287,22 @@ fn matching_of(export: &Export, hypothesis: &Hypothesis, measure: &Measure) -> O
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let factor = measure.factor(export, name, if place == 0 { &levels } else { &[] });
     (factor.levels.len() > 1).then(|| measure.matching(export, &factor))
+}
+
+/// How answers are distributed at the levels of each factor that is tested, where these are few.
+fn distributions(
+    export: &Export,
+    study: &Study,
+    hypothesis: &Hypothesis,
+    measure: &Measure,
+) -> Vec<AnswerDistribution> {
+    if of_pair(study, hypothesis).is_some() {
+        return Vec::new();
+    }
+    let mut factors = factors(export, study, hypothesis, measure).unwrap_or_default();
+    factors.truncate(if is_two_way(hypothesis.test) { 2 } else { 1 });
+    let few = factors.iter().filter(|(factor, _)| factor.levels.len() <= MOST_LEVELS);
+    few.map(|(factor, _)| AnswerDistribution::of(measure, factor)).collect()
 }
 
 /// What the recommended tests say. A hypothesis of two factors is about their interaction, which stands

@@ -1,12 +1,12 @@
 //! One line of a table of tests: what any test gives, with what it was a test of.
 
 use mimique_stats::{
-    AlignedRankTransform, Alternative, Blocks, BradleyTerry, ChiSquare, Contingency,
+    AlignedRankTransform, Alternative, Blocks, BradleyTerry, ChiSquare, Contingency, EffectSize,
     EquivalenceOfGroups, EquivalenceOfPairs, Factor, Friedman, HodgesLehmann, KruskalWallis,
     MannWhitney, MinFPrime, Numbers, Outcome, Refusal, ScheirerRayHare, Sign, Spearman,
     SumsOfSquares, Term, TestNames, TestResult, TestRow, WORTHS_RATIO, Wilcoxon, WilcoxonOptions,
-    aligned_rank_transform, chi_square, friedman, kruskal_wallis, mann_whitney, scheirer_ray_hare,
-    sign, spearman, wilcoxon,
+    aligned_rank_transform, chi_square, cliff_delta, friedman, kruskal_wallis, mann_whitney,
+    paired_dominance, scheirer_ray_hare, sign, spearman, standardised_difference, wilcoxon,
 };
 use serde::{Serialize, Serializer};
 
@@ -70,6 +70,8 @@ pub(crate) struct TestLine {
     pub unit: Unit,
     /// The numbers.
     pub row: TestRow,
+    /// Standardised effect sizes with intervals, of tests on one value per person.
+    pub effect_sizes: Vec<EffectSize>,
     /// p after Holm's correction, where several were tested.
     pub p_holm: Option<f64>,
     /// How other programs compute it.
@@ -94,6 +96,8 @@ impl Serialize for TestLine {
             p_holm: Option<f64>,
             effect_name: &'l str,
             effect: Option<f64>,
+            #[serde(skip_serializing_if = "<[EffectSize]>::is_empty")]
+            effect_sizes: &'l [EffectSize],
             n: usize,
         }
         let variant = match self.row.variant.as_str() {
@@ -111,6 +115,7 @@ impl Serialize for TestLine {
             p_holm: self.p_holm,
             effect_name: self.names.effect,
             effect: self.row.effect,
+            effect_sizes: &self.effect_sizes,
             n: self.row.n,
         }
         .serialize(serializer)
@@ -168,6 +173,12 @@ impl TestLine {
         self
     }
 
+    /// The same with effect sizes.
+    fn with_effect_sizes(mut self, sizes: impl IntoIterator<Item = EffectSize>) -> Self {
+        self.effect_sizes = sizes.into_iter().collect();
+        self
+    }
+
     /// Every row of a test's result. A refusal inside a report is a stated impossibility.
     fn all<T: TestResult>(
         result: Result<Outcome<T>, Refusal>,
@@ -184,6 +195,7 @@ impl TestLine {
                 names: T::NAMES,
                 unit: unit.clone(),
                 row,
+                effect_sizes: Vec::new(),
                 p_holm: None,
                 call: call(place),
             });
@@ -222,9 +234,17 @@ impl TestLine {
         Self::groups::<KruskalWallis>(kruskal_wallis(values, factor), values, factor, unit)
     }
 
-    /// Mann-Whitney.
+    /// Mann-Whitney; of people with Cliff's delta of the first level.
     pub(crate) fn mann_whitney(values: &Numbers, factor: &Factor, unit: &Unit) -> TestOutcome {
-        Self::groups::<MannWhitney>(mann_whitney(values, factor), values, factor, unit)
+        let line = Self::groups::<MannWhitney>(mann_whitney(values, factor), values, factor, unit);
+        if *unit == Unit::Trials {
+            return line;
+        }
+        let [first, second] = [0, 1].map(|level: u32| -> Vec<f64> {
+            let own = factor.codes.iter().zip(&values.values);
+            own.filter(|(code, _)| **code == level).map(|(_, value)| *value).collect()
+        });
+        line.map(|line| line.with_effect_sizes(cliff_delta(&first, &second)))
     }
 
     /// Mann-Whitney of two groups, Kruskal-Wallis of more.
@@ -247,7 +267,8 @@ impl TestLine {
         Self::one(result.map(Outcome::Ok), &Unit::Trials, call)
     }
 
-    /// Wilcoxon's signed rank test with the Hodges-Lehmann estimate that goes with it.
+    /// Wilcoxon's signed rank test with the Hodges-Lehmann estimate that goes with it; of people's means with effect sizes
+    /// of the differences.
     pub(crate) fn wilcoxon(
         differences: &Numbers,
         options: WilcoxonOptions,
@@ -260,7 +281,17 @@ impl TestLine {
             _ => None,
         };
         let line = Self::one::<Wilcoxon>(result, unit, call);
-        (line.map(|line| line.with_term(Term::Differences(differences.name.clone()))), interval)
+        let sizes = match unit {
+            Unit::MeansWithinPeople => {
+                let values = &differences.values;
+                [paired_dominance(values), standardised_difference(values)]
+            }
+            _ => [None, None],
+        };
+        let term = Term::Differences(differences.name.clone());
+        let line =
+            line.map(|line| line.with_term(term).with_effect_sizes(sizes.into_iter().flatten()));
+        (line, interval)
     }
 
     /// Spearman.
@@ -270,12 +301,21 @@ impl TestLine {
             .text(&y.name)
             .text(unit.in_scripts());
         let line = Self::one::<Spearman>(spearman(x, y), unit, call);
-        line.map(|line| line.with_term(Term::Relation([y.name.clone(), x.name.clone()])))
+        line.map(|line| {
+            let rho = line.row.effect.filter(|_| *unit != Unit::Trials);
+            let size = rho.map(|rho| EffectSize::spearman(rho, line.row.n));
+            line.with_term(Term::Relation([y.name.clone(), x.name.clone()])).with_effect_sizes(size)
+        })
     }
 
     /// Friedman with Iman and Davenport's F.
     pub(crate) fn friedman(blocks: &Blocks, call: Call) -> TestOutcome {
-        Self::one::<Friedman>(Ok(friedman(blocks)), &Unit::MeansWithinPeople, call)
+        let line = Self::one::<Friedman>(Ok(friedman(blocks)), &Unit::MeansWithinPeople, call);
+        let groups = blocks.groups.len();
+        line.map(|line| {
+            let size = line.row.effect.map(|w| EffectSize::kendall_w(w, line.row.n, groups));
+            line.with_effect_sizes(size)
+        })
     }
 
     /// Friedman on how often each person chose each level.
@@ -306,7 +346,7 @@ impl TestLine {
 
     /// Equal worths by the likelihood ratio.
     pub(crate) fn worths_ratio(found: &BradleyTerry, call: Call) -> TestOutcome {
-        let line = |row| Self { names: WORTHS_RATIO, unit: Unit::Trials, row, p_holm: None, call };
+        let line = |row| Self::beside(WORTHS_RATIO, row, Unit::Trials, call);
         found.ratio_row().map(line).map_reason(Why::from)
     }
 
@@ -326,7 +366,7 @@ impl TestLine {
 
     /// A row that a test has beside its own.
     pub(crate) fn beside(names: TestNames, row: TestRow, unit: Unit, call: Call) -> Self {
-        Self { names, unit, row, p_holm: None, call }
+        Self { names, unit, row, effect_sizes: Vec::new(), p_holm: None, call }
     }
 
     /// Scheirer-Ray-Hare with type I sums of squares: both factors and their interaction.

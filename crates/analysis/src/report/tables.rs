@@ -308,6 +308,46 @@ pub(crate) fn many_pairs(
     Some(table)
 }
 
+/// Standardised effect sizes of the recommended tests with their intervals; none where no test has one.
+pub(crate) fn effect_sizes(
+    naming: &Naming<'_>,
+    id: String,
+    factor: &str,
+    people: &PersonLevel,
+) -> Option<DataTable> {
+    let language = naming.language;
+    let caption = language.pick(
+        "Standardised effect sizes (d_w counts participants without a difference; r of the tests does not)",
+        "Tailles d’effet standardisées (d_w compte les personnes sans différence ; r des tests ne les compte pas)",
+    );
+    let heading = language.pick(
+        ["", "effect size", "estimate", "95 % CI", "n"],
+        ["", "taille d’effet", "estimation", "IC à 95 %", "n"],
+    );
+    let mut table = DataTable::new(id, caption, heading);
+    for (label, outcome, _) in
+        recommended_lines(naming, factor, MeasureKind::Rating, people, usize::MAX)
+    {
+        let Outcome::Ok(line) = outcome else { continue };
+        for size in &line.effect_sizes {
+            let number = |value: f64| reading::effect_size_number(language, size, value);
+            let interval = size.interval_95.map(|ends| ends.map(number));
+            let interval = interval.map_or_else(
+                || "–".to_owned(),
+                |[low, high]| format!("[{low}{} {high}]", language.pick(",", " ;")),
+            );
+            table.row([
+                label.clone(),
+                size.kind.symbol().to_owned(),
+                number(size.estimate),
+                interval,
+                size.n.to_string(),
+            ]);
+        }
+    }
+    (!table.rows.is_empty()).then_some(table)
+}
+
 /// What a line is about: the factor, or the effect of two.
 fn term_of(naming: &Naming<'_>, factor: &str, outcome: &TestOutcome) -> String {
     match outcome {

@@ -1,5 +1,6 @@
 //! The trials of an export, with the study's exclusions applied, and what was measured in them.
 
+pub(crate) mod answer_distribution;
 pub(crate) mod asked_question;
 pub(crate) mod column;
 pub(crate) mod combinations;

@@ -143,7 +143,8 @@ impl Rule {
 
     /// Several of them, in one sentence.
     pub(crate) fn listed(rules: &[Self], language: Language) -> String {
-        rules.iter().map(|rule| rule.words(language, "")).collect::<Vec<_>>().join("; ")
+        let words: Vec<String> = rules.iter().map(|rule| rule.words(language, "")).collect();
+        language.list(&words)
     }
 }
 

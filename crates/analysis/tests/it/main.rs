@@ -6,6 +6,7 @@ mod block_scripts;
 mod choices;
 mod conditions;
 mod detection;
+mod effect_sizes;
 mod equivalence;
 mod faces;
 mod fit;

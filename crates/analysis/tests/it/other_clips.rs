@@ -55,7 +55,10 @@ fn ratings_within_people_have_all_tests_and_the_study_says_which_decides() {
     assert!(reading.contains("odds of a higher rating"), "{reading}");
     assert!(reading.contains("take the clips as they are"), "{reading}");
     assert!(reading.contains("min F'"), "{reading}");
-    assert!(reading.contains("a difference was shown, for these clips"), "{reading}");
+    assert!(
+        reading.contains("null hypothesis of no difference rejected, for these clips"),
+        "{reading}"
+    );
 }
 
 #[test]

@@ -116,15 +116,16 @@ fn what_the_correction_takes_back_is_not_decided() {
         let [p, corrected] =
             ["p", "p_holm_over_hypotheses"].map(|key| hypothesis[key].as_f64().unwrap());
         let words =
-            if corrected < 0.05 { "a difference was shown" } else { "no difference was shown" };
+            if corrected < 0.05 { "no difference rejected" } else { "no difference not rejected" };
         let reading = &report.readings[0].1;
-        let first = format!("Corrected for the 4 hypotheses of this study: {words}, p");
+        let first =
+            format!("Corrected for the 4 hypotheses of this study: null hypothesis of {words}, p");
         assert!(reading.starts_with(&first), "{p} {corrected} {reading}");
         assert!(reading.contains("; this p decides. Before that correction:"), "{reading}");
         let table = report.files.iter().find(|file| file.path == "tables/hypotheses.csv").unwrap();
         let row = table.text.lines().nth(1).unwrap();
         assert!(row.contains(words), "{corrected} {row}");
-        assert!(table.text.starts_with("hypothesis,decision,"));
+        assert!(table.text.starts_with("expected,decision,"));
         taken_back += usize::from(p < 0.05 && corrected >= 0.05);
         kept += usize::from(corrected < 0.05);
     }
@@ -169,8 +170,7 @@ fn words_for_a_paper_have_the_numbers_of_the_tables() {
         model["df_denominator"].as_f64().unwrap(),
         model["f"].as_f64().unwrap()
     );
-    let words =
-        "(H2): a difference was shown, linear mixed model with random participants and segments, ";
+    let words = "(H2): null hypothesis of no difference rejected, linear mixed model with random participants and segments, ";
     assert!(page.contains(&format!("{words}{f}")), "{f}: {page}");
     // The tests that ran are named, and no others.
     assert!(page.contains("Tests of H1, H2 and H3: linear mixed model, fitted by"));

@@ -347,21 +347,21 @@ fn within(least: f64, most: f64, [from, to, on, up_to]: [&str; 4]) -> String {
     }
 }
 
-/// The marks around a name, and the words after a list that was cut.
-pub(crate) type Marks = ([&'static str; 2], [&'static str; 2]);
+/// The language of a list, the marks around a name, and the word after the number of names that are not listed.
+pub(crate) type Marks = (Language, [&'static str; 2], &'static str);
 
-pub(crate) const ENGLISH: Marks = (["\"", "\""], [" and ", " more"]);
-pub(crate) const FRENCH: Marks = (["« ", " »"], [" et ", " autres"]);
+pub(crate) const ENGLISH: Marks = (Language::English, ["\"", "\""], "more");
+pub(crate) const FRENCH: Marks = (Language::French, ["« ", " »"], "autres");
 
 /// Names that a list has at most.
 const LISTED: usize = 12;
 
-/// At most twelve names, quoted.
-pub(crate) fn listed(names: &[String], ([open, close], [and, more]): Marks) -> String {
+/// At most twelve names, quoted, and how many more there are.
+pub(crate) fn listed(names: &[String], (language, [open, close], more): Marks) -> String {
     let quoted = names.iter().take(LISTED).map(|name| format!("{open}{name}{close}"));
-    let mut text = quoted.collect::<Vec<_>>().join(", ");
+    let mut items: Vec<String> = quoted.collect();
     if names.len() > LISTED {
-        text.push_str(&format!("{and}{}{more}", names.len() - LISTED));
+        items.push(format!("{} {more}", names.len() - LISTED));
     }
-    text
+    language.list(&items)
 }

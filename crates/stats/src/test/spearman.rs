@@ -103,7 +103,7 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
         p_value: significance.p(),
         ln_p: significance.by_t.map(|tail| tail.ln_p),
         p_by_semantics: significance.by_semantics(),
-        ci95_fisher: interval(1.0),
+        ci95_fisher: fisher_interval(rho, n),
         ci95_fieller: interval(1.06),
         ci95_bonett_wright: bonett_wright_interval(rho, n),
         kendall_tau_b,
@@ -115,6 +115,12 @@ pub fn spearman(x: &Numbers, y: &Numbers) -> Result<Outcome<Spearman>, Refusal> 
 /// (Psychometrika 65, 2000, p. 23); none of fewer than four pairs, or of a perfect correlation.
 pub fn bonett_wright_interval(rho: f64, n: usize) -> Option<[f64; 2]> {
     interval(rho, n, 1.0 + rho * rho / 2.0)
+}
+
+/// Fisher's 95 % interval of Pearson's correlation of `n` pairs, variance 1 / (n - 3) of z (Fisher 1921); none of fewer than
+/// four pairs, or of a perfect correlation.
+pub fn fisher_interval(r: f64, n: usize) -> Option<[f64; 2]> {
+    interval(r, n, 1.0)
 }
 
 /// A 95 % interval by Fisher's z, whose variance is so many times 1 / (n - 3).

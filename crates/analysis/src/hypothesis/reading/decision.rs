@@ -38,24 +38,30 @@ pub(crate) fn deciding_p(language: Language, result: &HypothesisResult) -> Vec<S
 /// The decision in words.
 fn decision(language: Language, decision: Decision) -> &'static str {
     match decision {
-        Decision::Shown(Sought::Difference) => {
-            language.pick("a difference was shown", "une différence a été montrée")
-        }
-        Decision::NotShown(Sought::Difference) => {
-            language.pick("no difference was shown", "aucune différence n’a été montrée")
-        }
-        Decision::Shown(Sought::Interaction) => {
-            language.pick("an interaction was shown", "une interaction a été montrée")
-        }
-        Decision::NotShown(Sought::Interaction) => {
-            language.pick("no interaction was shown", "aucune interaction n’a été montrée")
-        }
-        Decision::Shown(Sought::Relation) => {
-            language.pick("a correlation was shown", "une corrélation a été montrée")
-        }
-        Decision::NotShown(Sought::Relation) => {
-            language.pick("no correlation was shown", "aucune corrélation n’a été montrée")
-        }
+        Decision::Shown(Sought::Difference) => language.pick(
+            "null hypothesis of no difference rejected",
+            "hypothèse nulle d’absence de différence rejetée",
+        ),
+        Decision::NotShown(Sought::Difference) => language.pick(
+            "null hypothesis of no difference not rejected",
+            "hypothèse nulle d’absence de différence non rejetée",
+        ),
+        Decision::Shown(Sought::Interaction) => language.pick(
+            "null hypothesis of no interaction rejected",
+            "hypothèse nulle d’absence d’interaction rejetée",
+        ),
+        Decision::NotShown(Sought::Interaction) => language.pick(
+            "null hypothesis of no interaction not rejected",
+            "hypothèse nulle d’absence d’interaction non rejetée",
+        ),
+        Decision::Shown(Sought::Relation) => language.pick(
+            "null hypothesis of no correlation rejected",
+            "hypothèse nulle d’absence de corrélation rejetée",
+        ),
+        Decision::NotShown(Sought::Relation) => language.pick(
+            "null hypothesis of no correlation not rejected",
+            "hypothèse nulle d’absence de corrélation non rejetée",
+        ),
         Decision::Equivalence(found) => verdict(language, found),
         Decision::NotTested => language.pick("not tested", "non testée"),
         Decision::NotForOtherClips => {

@@ -3,6 +3,8 @@
 
 mod decision;
 mod detection;
+mod distribution;
+mod effect_size;
 mod equivalence;
 mod matching;
 mod other_clips;
@@ -23,6 +25,8 @@ use crate::naming::people_counted;
 use crate::trials::measure::MeasureKind;
 pub(crate) use decision::{deciding_p, decision_of, mark, supports};
 pub(crate) use detection::d_prime_by;
+pub(crate) use distribution::distribution;
+pub(crate) use effect_size::{effect_size, effect_size_number, effect_sizes, without_zero};
 pub(crate) use equivalence::{
     equivalence, equivalence_by_model, equivalence_for_other_clips, equivalence_t, verdict,
 };

@@ -131,7 +131,7 @@ fn steps(language: Language, flow: &Flow) -> [Step; 4] {
     ]
 }
 
-fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
+pub(crate) fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
     let mut people_out = reasons(language, &flow.people_left_out);
     if !flow.researcher_reasons.is_empty() {
         // Each of the researcher's own reasons has its line.
@@ -148,7 +148,7 @@ fn people_left_out(language: Language, flow: &Flow) -> Vec<String> {
     people_out
 }
 
-fn reasons(language: Language, left_out: &BTreeMap<Reason, usize>) -> Vec<String> {
+pub(crate) fn reasons(language: Language, left_out: &BTreeMap<Reason, usize>) -> Vec<String> {
     let line = |(&reason, count): (&Reason, &usize)| {
         format!("{}{} {count}", in_words(language, reason), colon(language))
     };

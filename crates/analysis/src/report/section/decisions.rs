@@ -74,13 +74,8 @@ impl Writer<'_> {
             ),
         };
         let columns = language.pick(
-            ["hypothesis", "decision", "difference or worth [95 %], or effect size", "people"],
-            [
-                "hypothèse",
-                "décision",
-                "différence ou valeur [95 %], ou taille d’effet",
-                "personnes",
-            ],
+            ["expected", "decision", "difference or worth [95 %], or effect size", "people"],
+            ["attendu", "décision", "différence ou valeur [95 %], ou taille d’effet", "personnes"],
         );
         let [hypothesis, decided, effect, people] = columns.map(str::to_owned);
         let caption = language.pick("What the hypotheses found", "Ce que donnent les hypothèses");

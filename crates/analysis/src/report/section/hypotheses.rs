@@ -119,6 +119,9 @@ impl Writer<'_> {
             &result.recommended,
         );
         self.blocks.extend(pairs.map(Block::Table));
+        let id = format!("hypothesis-{}-effect-sizes", slug(&result.id));
+        let sizes = tables::effect_sizes(&self.naming, id, factor, &result.recommended);
+        self.blocks.extend(sizes.map(Block::Table));
         self.equivalence_tests(result);
         self.other_clips(result);
     }

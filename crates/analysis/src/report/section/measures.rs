@@ -138,6 +138,8 @@ impl Writer<'_> {
         let unmatched = reading::unmatched(&self.naming, &result.matching);
         self.blocks.extend(unmatched.map(Block::Paragraph));
         self.blocks.push(Block::Reading(words));
+        let spoken = reading::distribution(&self.naming, &result.answer_distribution, measure.kind);
+        self.blocks.extend(spoken.map(Block::Caution));
         let id = format!("{}-by-{}", slug(&measure.id), slug(name));
         if self.factors.first() == Some(name) {
             self.person_lines(measure, factor);
@@ -183,6 +185,8 @@ impl Writer<'_> {
         let people = &result.recommended;
         let pairs = tables::many_pairs(&self.naming, pairs_id, name, measure.kind, people);
         self.blocks.extend(pairs.map(Block::Table));
+        let sizes = tables::effect_sizes(&self.naming, format!("{id}-effect-sizes"), name, people);
+        self.blocks.extend(sizes.map(Block::Table));
     }
 
     /// What the levels look like: shares of right answers, or how answers lie.

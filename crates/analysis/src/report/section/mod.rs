@@ -17,6 +17,7 @@ pub(crate) mod notes;
 pub(crate) mod other_clips;
 pub(crate) mod panels;
 pub(crate) mod paper;
+pub(crate) mod paper_participants;
 pub(crate) mod people;
 pub(crate) mod recognition;
 pub(crate) mod roc;
@@ -214,7 +215,15 @@ fn of_measures<'a>(
 /// Title and subtitle of the report.
 fn heading(export: &Export, study: &Study, language: Language) -> (String, String) {
     let title = study.study_metadata.title.in_language(language.code()).to_owned();
-    let people = people_counted(language, export.flow.people_used);
+    let (arrived, used) = (export.flow.people, export.flow.people_used);
+    let people = people_counted(language, arrived);
+    let people = match arrived == used {
+        true => people,
+        false => language.pick(
+            format!("{people}, {used} in the analysis"),
+            format!("{people}, dont {used} dans l’analyse"),
+        ),
+    };
     let trials =
         language.counted(export.flow.trials_used, ["trial", "trials"], ["essai", "essais"]);
     let subtitle = language.pick(

@@ -5,19 +5,18 @@ use std::collections::BTreeSet;
 
 use mimique_locale::Language;
 use mimique_report::document::Block;
-use mimique_stats::{EquivalenceVerdict, Outcome};
+use mimique_stats::{EffectSize, EquivalenceVerdict, Outcome};
 use mimique_study::KindOfQuestion as _;
 
-use crate::hypothesis::decision::{Decision, EffectUnit, deciding_p_values, decision, effects};
+use crate::hypothesis::decision::{
+    Decision, EffectOf, EffectUnit, deciding_p_values, decision, effects,
+};
 use crate::hypothesis::other_clips::{DecidingTest, OtherClips};
 use crate::hypothesis::test_line::{TestLine, Unit};
 use crate::hypothesis::{HypothesisResult, deciding_test, reading};
-use crate::naming::people_counted;
 use crate::preregistration::pairs::shown;
-use crate::report::results::AboutPeople;
 use crate::report::section::Writer;
 use crate::trials::measure::MeasureKind;
-use crate::trials::rule::Rule;
 
 impl Writer<'_> {
     /// Methods and results, to be copied.
@@ -41,18 +40,7 @@ impl Writer<'_> {
 
     fn methods_paragraph(&self, hypotheses: &[HypothesisResult]) -> String {
         let language = self.language();
-        let flow = &self.export.flow;
-        let mut sentences = vec![match flow.people - flow.people_used {
-            0 => language.pick(
-                format!("{} took part.", people_counted(language, flow.people)),
-                format!("{} participé.", language.counted(flow.people, ["", ""], ["personne a", "personnes ont"])),
-            ),
-            out => language.pick(
-                format!("{} took part; {out} {} excluded by rules fixed beforehand ({}), which leaves {}.", people_counted(language, flow.people), if out == 1 { "was" } else { "were" }, Rule::listed(&flow.rules, language), flow.people_used),
-                format!("{} participé ; {} par des règles fixées à l’avance ({}), ce qui en laisse {}.", language.counted(flow.people, ["", ""], ["personne a", "personnes ont"]), language.counted(out, ["", ""], ["a été exclue", "ont été exclues"]), Rule::listed(&flow.rules, language), flow.people_used),
-            ),
-        }];
-        sentences.extend(self.about_people_in_paper());
+        let mut sentences = self.participants_in_paper();
         sentences.push(self.clips_in_paper());
         sentences.extend(self.presentation_in_paper());
         sentences.extend(self.questions_in_paper());
@@ -64,6 +52,18 @@ impl Writer<'_> {
                 format!("Les p des {tested} hypothèses sont corrigés par la méthode de Holm."),
             ));
         }
+        if has_effect_sizes(hypotheses) {
+            let words = language.pick(
+                "d_z is the mean of the differences between participants’ means divided by their standard deviation, without Hedges’s correction; d_w is the share of participants with a positive difference less the share with a negative one (Cliff, 1993), in which participants without a difference count.",
+                "d_z est la moyenne des différences entre moyennes des participants divisée par leur écart type, sans correction de Hedges ; d_w est la part des participants à différence positive moins celle à différence négative (Cliff, 1993), où comptent les participants sans différence.",
+            );
+            sentences.push(words.to_owned());
+        }
+        let version = env!("CARGO_PKG_VERSION");
+        sentences.push(language.pick(
+            format!("Analyses were computed with Mimique {version}."),
+            format!("Les analyses ont été calculées avec Mimique {version}."),
+        ));
         sentences.join(" ")
     }
 
@@ -134,7 +134,7 @@ impl Writer<'_> {
             .into_iter()
             .map(|(test, ids)| {
                 let colon = language.pick(":", " :");
-                format!("{}{colon} {test}", listed(language, &ids))
+                format!("{}{colon} {test}", language.list(&ids))
             })
             .collect();
         let mut sentences = Vec::new();
@@ -143,45 +143,15 @@ impl Writer<'_> {
             sentences
                 .push(language.pick(format!("Tests of {tests}."), format!("Tests de {tests}.")));
         }
+        sentences.extend(formulas_in_paper(language, hypotheses));
         if rank_estimates {
             let words = language.pick(
-                "Differences of these tests are Hodges-Lehmann estimates.",
+                "Differences of these rank tests are Hodges-Lehmann estimates.",
                 "Les différences de ces tests sont des estimations de Hodges-Lehmann.",
             );
             sentences.push(words.to_owned());
         }
         sentences
-    }
-
-    /// Numbers that people told about themselves, such as their age.
-    fn about_people_in_paper(&self) -> Option<String> {
-        let language = self.language();
-        let numbers = self.results.about_people.iter().filter_map(|(column, about)| match about {
-            AboutPeople::Numbers(Outcome::Ok(found)) => {
-                let [mean, low, high] = [found.mean, found.min, found.max];
-                let sd = found.sd.map_or_else(String::new, |sd| {
-                    let sd = language.fixed(sd, 1);
-                    language.pick(format!(", SD = {sd}"), format!(", ET = {sd}"))
-                });
-                Some(format!(
-                    "{}{} M = {}{sd}, {} – {}",
-                    self.naming.column(column),
-                    language.pick(":", " :"),
-                    language.fixed(mean, 1),
-                    language.number(low),
-                    language.number(high)
-                ))
-            }
-            _ => None,
-        });
-        let numbers: Vec<String> = numbers.collect();
-        (!numbers.is_empty()).then(|| {
-            let numbers = numbers.join("; ");
-            language.pick(
-                format!("They said of themselves: {numbers}."),
-                format!("Elles ont dit d’elles-mêmes : {numbers}."),
-            )
-        })
     }
 
     fn clips_in_paper(&self) -> String {
@@ -198,7 +168,7 @@ impl Writer<'_> {
             .iter()
             .map(|method| self.naming.level("method", method))
             .collect();
-        let (shown, names) = (shown.len(), methods.join(", "));
+        let (shown, names) = (shown.len(), self.language().list(&methods));
         let segments = language.counted(
             segments,
             ["performance", "performances"],
@@ -207,8 +177,8 @@ impl Writer<'_> {
         let methods =
             language.counted(methods.len(), ["method", "methods"], ["méthode", "méthodes"]);
         language.pick(
-            format!("They saw clips out of {shown}, of {segments} by {methods} ({names}), which Mimique solved and rendered in the browser, all with the same camera, light and duration of a performance, in an order drawn for each person."),
-            format!("Elles ont vu des extraits parmi {shown}, de {segments} par {methods} ({names}), que Mimique a résolus et rendus dans le navigateur, tous avec la même caméra, la même lumière et la même durée par interprétation, dans un ordre tiré pour chacune."),
+            format!("Participants saw clips from a set of {shown} ({segments}, {methods}: {names}), which Mimique solved and rendered in the browser, all with the same camera, light and duration per performance, in a random order for each participant."),
+            format!("Les participants ont vu des extraits d’un ensemble de {shown} ({segments}, {methods} : {names}), que Mimique a résolus et rendus dans le navigateur, tous avec la même caméra, la même lumière et la même durée par interprétation, dans un ordre tiré au hasard pour chacun."),
         )
     }
 
@@ -237,9 +207,9 @@ impl Writer<'_> {
             })
             .collect();
         (!asked.is_empty()).then(|| {
-            let asked = asked.join(", ");
+            let asked = language.list(&asked);
             language.pick(
-                format!("They were asked: {asked}."),
+                format!("They were asked {asked}."),
                 format!("Il leur a été demandé : {asked}."),
             )
         })
@@ -306,9 +276,13 @@ impl Writer<'_> {
                 let pair = self.effect_of(factor, effect);
                 let [low, high] = effect.interval.map(number);
                 let (estimate, covers) = (number(effect.estimate), effect.covers);
+                let sizes = pair_effect_sizes(result, effect.of).into_iter();
+                let sizes =
+                    sizes.map(|size| format!(", {}", reading::effect_size(language, &size)));
+                let sizes: String = sizes.collect();
                 language.pick(
-                    format!("{pair} = {estimate}{unit}, {covers}% CI [{low}, {high}]"),
-                    format!("{pair} = {estimate}{unit}, IC à {covers} % [{low} ; {high}]"),
+                    format!("{pair} = {estimate}{unit}, {covers}% CI [{low}, {high}]{sizes}"),
+                    format!("{pair} = {estimate}{unit}, IC à {covers} % [{low} ; {high}]{sizes}"),
                 )
             })
             .collect();
@@ -358,17 +332,6 @@ fn test_in_methods(language: Language, line: &TestLine) -> String {
     format!("{} {of}", line.names.in_words[language.pick(0, 1)])
 }
 
-/// `H1, H2 and H3`.
-fn listed(language: Language, names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [before @ .., last] => {
-            format!("{} {} {last}", before.join(", "), language.pick("and", "et"))
-        }
-    }
-}
-
 /// Test, statistic, p and effect size.
 fn test_in_paper(language: Language, line: &TestLine, p: Vec<String>) -> Vec<String> {
     let mut parts = vec![
@@ -383,12 +346,18 @@ fn test_in_paper(language: Language, line: &TestLine, p: Vec<String>) -> Vec<Str
     ];
     parts.extend(p);
     parts.extend(line.row.effect.map(|effect| {
+        // With its interval where it has one.
+        if let [size] = line.effect_sizes.as_slice()
+            && size.kind.symbol() == line.names.effect_symbol
+        {
+            return reading::effect_size(language, size);
+        }
         // Those that cannot exceed 1.
         let is_bounded = matches!(
             line.names.effect_symbol,
             "r" | "W" | "V" | "rho" | "share" | "u" | "ε²" | "ηp²" | "η²H" | "ICC"
         );
-        let effect = without_zero(language, language.fixed(effect, 2), is_bounded);
+        let effect = reading::without_zero(language, language.fixed(effect, 2), is_bounded);
         format!("{} = {effect}", line.names.effect_symbol)
     }));
     parts
@@ -403,10 +372,47 @@ fn p_in_paper(language: Language, p: f64) -> String {
     }
 }
 
-/// A number that cannot exceed 1, in English without the zero before the point.
-fn without_zero(language: Language, text: String, is_bounded: bool) -> String {
-    match language {
-        Language::English if is_bounded => text.replacen("0.", ".", 1),
-        _ => text,
+/// The formula of each model that decided a hypothesis, in the notation of R's lme4; `None` where no model decided.
+fn formulas_in_paper(language: Language, hypotheses: &[HypothesisResult]) -> Option<String> {
+    let formula = |result: &HypothesisResult| {
+        let decides = result.other_clips.as_ref().filter(|own| own.decides)?;
+        let Some(DecidingTest::LinearModel(model)) = decides.deciding_test() else { return None };
+        Some(format!("{}{} {}", result.id, language.pick(":", " :"), model.formula))
+    };
+    let formulas: Vec<String> = hypotheses.iter().filter_map(formula).collect();
+    (!formulas.is_empty()).then(|| {
+        let formulas = formulas.join(language.pick("; ", " ; "));
+        language.pick(
+            format!("Model formulas in the notation of lme4 are {formulas}."),
+            format!("Les formules des modèles, dans la notation de lme4, sont {formulas}."),
+        )
+    })
+}
+
+/// The effect sizes of participants' differences between two levels, in the direction of the effect.
+fn pair_effect_sizes(result: &HypothesisResult, of: EffectOf<'_>) -> Vec<EffectSize> {
+    let EffectOf::Difference([a, b]) = of else { return Vec::new() };
+    for pair in &result.recommended.pairs {
+        let Outcome::Ok(line) = &pair.wilcoxon else { continue };
+        if pair.a == a && pair.b == b {
+            return line.effect_sizes.clone();
+        }
+        if pair.a == b && pair.b == a {
+            let turned = line.effect_sizes.iter().map(|size| EffectSize {
+                estimate: -size.estimate,
+                interval_95: size.interval_95.map(|[low, high]| [-high, -low]),
+                ..*size
+            });
+            return turned.collect();
+        }
     }
+    Vec::new()
+}
+
+/// Whether a difference of a hypothesis is printed with its standardised effect sizes.
+fn has_effect_sizes(hypotheses: &[HypothesisResult]) -> bool {
+    hypotheses.iter().any(|result| {
+        let mut all = effects(result).into_iter();
+        all.any(|effect| !pair_effect_sizes(result, effect.of).is_empty())
+    })
 }

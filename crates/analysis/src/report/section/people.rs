@@ -17,6 +17,7 @@ impl Writer<'_> {
         let language = self.language();
         self.heading(2, "Participants", "Participants");
         let flow = flow_chart(language, &self.export.flow);
+        let mut rules_block = None;
         if self.export.flow.rules.is_empty() {
             self.paragraph(
                 "The study file sets no rule of exclusion; only withdrawn and pilot sessions are left out.",
@@ -38,9 +39,13 @@ impl Writer<'_> {
                     format!("Règles d’exclusion, fixées dans le fichier de l’étude : {rules}."),
                 ),
             };
-            self.blocks.push(Block::Paragraph(words));
+            rules_block = Some(Block::Paragraph(words));
         }
         self.figure(flow);
+        if let Some(rules) = rules_block {
+            let heading = language.pick("Rules of exclusion", "Règles d’exclusion").to_owned();
+            self.blocks.push(Block::Folded(heading, vec![rules]));
+        }
         let caption = match self.study.conditions().is_empty() {
             true => language.pick(
                 "Answers of the people in the analysis about themselves",
