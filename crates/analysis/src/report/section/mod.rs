@@ -20,6 +20,7 @@ pub(crate) mod paper;
 pub(crate) mod people;
 pub(crate) mod recognition;
 pub(crate) mod roc;
+pub(crate) mod sensitivity;
 pub(crate) mod stimulus_measures;
 pub(crate) mod timing;
 pub(crate) mod trace_tests;
@@ -41,6 +42,7 @@ use crate::report::preview::Preview;
 use crate::report::replay;
 use crate::report::results::Results;
 use crate::report::section::hypotheses::tested;
+use crate::sensitivity::Sensitivity;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 use crate::trials::measure::Measure;
@@ -86,6 +88,8 @@ pub(crate) struct Beside<'a> {
     pub stimuli: Option<&'a StimulusMeasures>,
     pub faces: Option<&'a FaceTables>,
     pub versions: &'a [OtherVersion],
+    /// Where it was asked for.
+    pub sensitivity: Option<&'a Sensitivity>,
 }
 
 /// Writes all sections.
@@ -108,6 +112,7 @@ pub(crate) fn write(
             flow: Some(&export.flow),
             people: &export.people,
             other_versions: beside.versions,
+            sensitivity: beside.sensitivity,
             ..Results::default()
         },
         factors: factors_in_use(export, study),
@@ -129,6 +134,9 @@ pub(crate) fn write(
     writer.in_short(&hypotheses);
     writer.participants();
     writer.hypotheses(&hypotheses);
+    if let Some(found) = beside.sensitivity {
+        writer.sensitivity(found);
+    }
     let readings = hypotheses.iter().map(|h| (h.id.clone(), h.reading.clone())).collect();
     let parts = of_measures(&writer, &measures, &hypotheses);
     for part in parts {
