@@ -159,6 +159,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "readings": report.readings.iter().map(|(id, reading)| {
                 serde_json::json!({"hypothesis": id, "reading": reading})
             }).collect::<Vec<_>>(),
+            "sensitivity": report.sensitivity.iter().map(|(id, words)| {
+                serde_json::json!({"hypothesis": id, "reading": words})
+            }).collect::<Vec<_>>(),
         });
         writeln!(out, "{summary:#}")?;
         return Ok(());
@@ -168,6 +171,15 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     writeln!(out, "{used} of {all}, {}", counted(report.trials, "trial"))?;
     for (id, reading) in &report.readings {
         writeln!(out, "{id}. {reading}")?;
+    }
+    for (id, words) in &report.sensitivity {
+        writeln!(out, "Sensitivity of {id}: {words}")?;
+    }
+    if multiverse && report.sensitivity.is_empty() {
+        writeln!(
+            out,
+            "Sensitivity: the study file states no hypothesis, so there is no verdict to repeat."
+        )?;
     }
     let files = counted(written.len(), "file");
     writeln!(out, "{files}, report: {}", page.display())?;

@@ -35,6 +35,9 @@ pub struct Report {
     pub trials: usize,
     /// The reading of each hypothesis: identifier and words.
     pub readings: Vec<(String, String)>,
+    /// How much each verdict depends on choices of the analysis, on segments and on participants, where that was asked for:
+    /// identifier of the hypothesis and words. Empty for a study without hypotheses.
+    pub sensitivity: Vec<(String, String)>,
 }
 
 /// What a report may be made with beside the export and the study.
@@ -86,7 +89,7 @@ pub fn analyze_with(
         return Err(export.flow.no_trial());
     }
     let sensitivity = multiverse.then(|| sensitivity(table, study, &export)).transpose()?;
-    let section::Sections { document, results, readings, replay } = {
+    let section::Sections { document, results, readings, sensitivity, replay } = {
         let beside = section::Beside {
             stimuli: stimuli.as_ref(),
             faces: faces.as_ref(),
@@ -103,5 +106,6 @@ pub fn analyze_with(
         people: (export.flow.people_used, export.flow.people),
         trials: export.flow.trials_used,
         readings,
+        sensitivity,
     })
 }

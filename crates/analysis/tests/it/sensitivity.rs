@@ -78,9 +78,9 @@ fn a_clear_effect_has_the_same_verdict_in_every_specification() {
     assert_eq!(found["dependence"], serde_json::json!([]));
     let words = section(&report, "Sensitivity");
     for expected in [
-        "The verdict is the same in 12 of 12 specifications. It depends on none of these choices.",
-        "None of the 6 segments changes it when omitted.",
-        "None of the 12 participants changes it when omitted.",
+        "The verdict is the same in 12 of 12 specifications. The verdict depends on none of these choices.",
+        "None of the 6 segments changes the verdict when omitted.",
+        "None of the 12 participants changes the verdict when omitted.",
         "every combination of the rules of exclusion, applied or not (4 in all)",
         "12 specifications for all hypotheses",
     ] {
@@ -117,12 +117,12 @@ fn an_effect_of_late_trials_alone_depends_on_the_rule_about_late_frames() {
         (
             Language::English,
             "Sensitivity",
-            "It depends on the rule that excludes trials with more than 20 % late frames: without it, a difference was shown, ",
+            "The verdict depends on the rule that excludes trials with more than 20 % late frames: without it, a difference was shown, ",
         ),
         (
             Language::French,
             "Sensibilité",
-            "Il dépend de la règle qui exclut les essais ayant plus de 20 % d’images en retard : sans elle, une différence a été montrée, ",
+            "Le verdict dépend de la règle qui exclut les essais ayant plus de 20 % d’images en retard : sans elle, une différence a été montrée, ",
         ),
     ] {
         let (report, found) = report(&study, &csv, language);
@@ -147,7 +147,7 @@ fn a_verdict_of_one_outlying_clip_depends_on_that_segment() {
     let joy = clips.iter().find(|clip| clip.factors["expression"].to_string() == "joy").unwrap();
     let words = section(&report, "Sensitivity");
     let expected = format!(
-        "It depends on 1 of the 6 segments: without segment {}, no difference",
+        "The verdict depends on 1 of the 6 segments: without segment {}, no difference",
         joy.segment
     );
     assert!(words.contains(&expected), "{expected}\n{words}");
@@ -168,7 +168,7 @@ fn a_verdict_of_six_people_depends_on_each_of_them() {
     let mean = |cell: Cell<'_>| if is_lsts(cell) { 6.0 } else { 2.0 };
     let (report, _) = report(&study, &rated(&study, 6, |_| false, mean), Language::English);
     let words = section(&report, "Sensitivity");
-    assert!(words.contains("It depends on 6 of the 6 participants: without participant p0001, no difference was shown (p = 0.062)"), "{words}");
+    assert!(words.contains("The verdict depends on 6 of the 6 participants: without participant p0001, no difference was shown (p = 0.062)"), "{words}");
     assert!(words.contains("; the others are in the table."), "{words}");
 }
 

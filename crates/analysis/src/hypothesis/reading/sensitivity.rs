@@ -54,8 +54,10 @@ pub(crate) fn dependence(
         ));
     }
     if own.dependence.is_empty() {
-        let words = language
-            .pick("It depends on none of these choices.", "Il ne dépend d’aucun de ces choix.");
+        let words = language.pick(
+            "The verdict depends on none of these choices.",
+            "Le verdict ne dépend d’aucun de ces choix.",
+        );
         sentences.push(words.to_owned());
     }
     let named = own.dependence.iter().take(MOST_NAMED);
@@ -63,9 +65,9 @@ pub(crate) fn dependence(
     if own.dependence.len() > MOST_NAMED {
         let more = own.dependence.len() - MOST_NAMED;
         sentences.push(language.pick(
-            format!("Further combinations of choices change it ({more}); they are in the table."),
+            format!("Further combinations of choices change the verdict ({more}); they are in the table."),
             format!(
-                "D’autres combinaisons de choix le changent ({more}) ; elles sont dans le tableau."
+                "D’autres combinaisons de choix changent le verdict ({more}) ; elles sont dans le tableau."
             ),
         ));
     }
@@ -90,7 +92,11 @@ fn without_verdict(
         .collect();
     let all = own.specifications.len();
     let n = computed.len();
-    let end = if counts.is_empty() { ".".to_owned() } else { format!(" ({}).", counts.join("; ")) };
+    let end = if counts.is_empty() {
+        ".".to_owned()
+    } else {
+        format!(" ({}).", counts.join(language.pick("; ", " ; ")))
+    };
     language.pick(
         format!("With the rules and the test as fixed in the study file there is no verdict. {n} of {all} specifications have one{end}"),
         format!("Avec les règles et le test tels que fixés dans le fichier de l’étude, il n’y a pas de verdict. {n} spécifications sur {all} en ont un{end}"),
@@ -112,15 +118,17 @@ fn dependence_sentence(
         [Change::WithoutRule(place)] => {
             let rule = rule(*place);
             language.pick(
-                format!("It depends on the rule that excludes {rule}: without it, {then}."),
-                format!("Il dépend de la règle qui exclut {rule} : sans elle, {then}."),
+                format!(
+                    "The verdict depends on the rule that excludes {rule}: without it, {then}."
+                ),
+                format!("Le verdict dépend de la règle qui exclut {rule} : sans elle, {then}."),
             )
         }
         [Change::Test(test)] => {
             let test = test_choice(language, own.kind, *test);
             language.pick(
-                format!("It depends on the test: by {test}, {then}."),
-                format!("Il dépend du test : selon {test}, {then}."),
+                format!("The verdict depends on the test: by {test}, {then}."),
+                format!("Le verdict dépend du test : selon {test}, {then}."),
             )
         }
         changes => {
@@ -136,8 +144,8 @@ fn dependence_sentence(
             });
             let words = words.collect::<Vec<_>>().join(language.pick(" and ", " et "));
             language.pick(
-                format!("It depends on choices together: {words}, {then}."),
-                format!("Il dépend de choix réunis : {words}, {then}."),
+                format!("The verdict depends on several choices together: {words}, {then}."),
+                format!("Le verdict dépend de plusieurs choix réunis : {words}, {then}."),
             )
         }
     }
@@ -164,8 +172,8 @@ pub(crate) fn influence(
     let changing: Vec<&Omission> = own.changing(influence).collect();
     if changing.is_empty() {
         return language.pick(
-            format!("None of the {n} {many} changes it when omitted."),
-            format!("Aucun des {n} {many} ne le change quand il est omis."),
+            format!("None of the {n} {many} changes the verdict when omitted."),
+            format!("Aucun des {n} {many} ne change le verdict quand il est omis."),
         );
     }
     let named = changing.iter().take(MOST_NAMED).map(|each| {
@@ -176,15 +184,15 @@ pub(crate) fn influence(
             format!("sans {one} {}, {verdict} ({p})", each.omitted),
         )
     });
-    let named = named.collect::<Vec<_>>().join("; ");
+    let named = named.collect::<Vec<_>>().join(language.pick("; ", " ; "));
     let count = changing.len();
     let more = match count.saturating_sub(MOST_NAMED) {
         0 => "",
         _ => language.pick("; the others are in the table", " ; les autres sont dans le tableau"),
     };
     language.pick(
-        format!("It depends on {count} of the {n} {many}: {named}{more}."),
-        format!("Il dépend de {count} des {n} {many} : {named}{more}."),
+        format!("The verdict depends on {count} of the {n} {many}: {named}{more}."),
+        format!("Le verdict dépend de {count} des {n} {many} : {named}{more}."),
     )
 }
 

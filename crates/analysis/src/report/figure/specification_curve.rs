@@ -54,7 +54,7 @@ pub(crate) fn specification_curve(
     data: DataTable,
 ) -> Figure {
     let has_estimates = points.iter().any(|point| point.estimate.is_some());
-    let top_of_p = TOP + if has_estimates { ESTIMATES + 30.0 } else { 0.0 };
+    let top_of_p = TOP + if has_estimates { ESTIMATES + 36.0 } else { 0.0 };
     let top_of_choices = top_of_p + P_VALUES + 14.0;
     let rows: usize = choices.iter().map(|own| 1 + own.rows.len()).sum();
     let mut svg = Svg::new(&words.caption, top_of_choices + ROW * rows as f64 + 12.0);

@@ -57,6 +57,7 @@ pub(crate) struct Sections {
     pub document: Document,
     pub results: String,
     pub readings: Vec<(String, String)>,
+    pub sensitivity: Vec<(String, String)>,
     pub replay: Vec<ReportFile>,
 }
 
@@ -134,9 +135,7 @@ pub(crate) fn write(
     writer.in_short(&hypotheses);
     writer.participants();
     writer.hypotheses(&hypotheses);
-    if let Some(found) = beside.sensitivity {
-        writer.sensitivity(found);
-    }
+    let sensitivity = beside.sensitivity.map(|found| writer.sensitivity(found));
     let readings = hypotheses.iter().map(|h| (h.id.clone(), h.reading.clone())).collect();
     let parts = of_measures(&writer, &measures, &hypotheses);
     for part in parts {
@@ -155,6 +154,7 @@ pub(crate) fn write(
         document: Document { title, subtitle, blocks: writer.blocks },
         results,
         readings,
+        sensitivity: sensitivity.unwrap_or_default(),
         replay,
     }
 }

@@ -14,30 +14,22 @@ use crate::sensitivity::{
 use crate::trials::rule::Rule;
 
 impl Writer<'_> {
-    /// The section, in a report for which it was asked.
-    pub(crate) fn sensitivity(&mut self, found: &Sensitivity) {
+    /// The section, in a report for which it was asked. Returns what it says of each hypothesis: identifier and words.
+    pub(crate) fn sensitivity(&mut self, found: &Sensitivity) -> Vec<(String, String)> {
         self.heading(2, "Sensitivity", "Sensibilité");
         if found.hypotheses.is_empty() {
             self.paragraph(
                 "The study file states no hypothesis, so there is no verdict to repeat.",
                 "Le fichier de l’étude n’énonce aucune hypothèse : il n’y a aucun verdict à répéter.",
             );
-            return;
+            return Vec::new();
         }
         self.what_is_repeated(found);
         let mut all: Option<DataTable> = None;
+        let mut said = Vec::new();
         for own in &found.hypotheses {
-            let result = self.study.hypotheses.iter().find(|each| each.id == own.id);
-            let statement = result
-                .map_or("", |hypothesis| hypothesis.statement.in_language(self.language().code()));
-            self.blocks.push(Block::Heading(3, format!("{}. {statement}", own.id)));
-            let words = [reading::dependence(&self.naming, &found.rules, own)]
-                .into_iter()
-                .chain(own.influence.iter().map(|it| reading::influence(&self.naming, own, it)));
-            self.blocks.push(Block::Reading(words.collect::<Vec<_>>().join(" ")));
             let table = self.specifications(found, own);
-            self.curve(found, own, &table);
-            self.omissions(own);
+            said.push((own.id.clone(), self.hypothesis_sensitivity(found, own, &table)));
             match &mut all {
                 Some(all) => all.rows.extend(table.rows),
                 None => all = Some(table),
@@ -49,6 +41,32 @@ impl Writer<'_> {
             caption.clone_into(&mut table.caption);
             self.folded_table(table);
         }
+        said
+    }
+
+    /// One hypothesis: in words, its curve, and the ranges over omissions. Returns the words.
+    fn hypothesis_sensitivity(
+        &mut self,
+        found: &Sensitivity,
+        own: &HypothesisSensitivity,
+        table: &DataTable,
+    ) -> String {
+        let result = self.study.hypotheses.iter().find(|each| each.id == own.id);
+        let code = self.language().code();
+        let statement = result.map_or("", |hypothesis| hypothesis.statement.in_language(code));
+        self.blocks.push(Block::Heading(3, format!("{}. {statement}", own.id)));
+        let mut said = reading::dependence(&self.naming, &found.rules, own);
+        self.blocks.push(Block::Reading(said.clone()));
+        self.curve(found, own, table);
+        let words = own.influence.iter().map(|it| reading::influence(&self.naming, own, it));
+        let words: Vec<String> = words.filter(|words| !words.is_empty()).collect();
+        if !words.is_empty() {
+            let words = words.join(" ");
+            said = format!("{said} {words}");
+            self.blocks.push(Block::Reading(words));
+        }
+        self.omissions(own);
+        said
     }
 
     /// Which rules and tests, and how many specifications.
@@ -75,13 +93,13 @@ impl Writer<'_> {
             ),
         };
         let words = language.pick(
-            format!("Every verdict is repeated under other reasonable choices: {sets}, each with every test that can decide the hypothesis. That makes {specifications} for all hypotheses. p is corrected over the hypotheses as in the rest of the report. Tests of single trials and the cumulative mixed model are not among them, because their p is too small. Participants who withdrew or declined, pilot sessions and exclusions by the researcher are the same in all."),
-            format!("Chaque verdict est répété avec d’autres choix raisonnables : {sets}, et avec chaque test qui peut décider l’hypothèse. Cela fait {specifications} pour toutes les hypothèses. p est corrigé sur les hypothèses comme dans le reste du rapport. Les tests sur les essais pris un à un et le modèle mixte cumulatif n’en font pas partie, car leur p est trop petit. Les personnes qui se sont retirées ou n’ont pas donné leur accord, les sessions pilotes et les exclusions par le chercheur sont les mêmes partout."),
+            format!("Every verdict is repeated under other reasonable choices: {sets}, each with every test that can decide the hypothesis. That makes {specifications} for all hypotheses. p is corrected over the hypotheses as in the rest of the report. Tests of single trials and the cumulative mixed model are not among them, because their p is too small. The estimate of min F' is the mean difference of the participants, without an interval. Participants who withdrew or declined, pilot sessions and exclusions by the researcher are the same in all."),
+            format!("Chaque verdict est répété avec d’autres choix raisonnables : {sets}, et avec chaque test qui peut décider l’hypothèse. Cela fait {specifications} pour toutes les hypothèses. p est corrigé sur les hypothèses comme dans le reste du rapport. Les tests sur les essais pris un à un et le modèle mixte cumulatif n’en font pas partie, car leur p est trop petit. L’estimation de min F' est la différence moyenne des participants, sans intervalle. Les personnes qui se sont retirées ou n’ont pas donné leur accord, les sessions pilotes et les exclusions par le chercheur sont les mêmes partout."),
         );
         self.blocks.push(Block::Paragraph(words));
         self.paragraph(
-            "Then each segment and each participant is omitted in turn, under the rules and the tests of the study file. A verdict that one of them changes rests on that one.",
-            "Puis chaque segment et chaque participant est omis tour à tour, avec les règles et les tests du fichier de l’étude. Un verdict que l’un d’eux change repose sur celui-là.",
+            "Then each segment and each participant is omitted in turn, under the rules and the tests of the study file. Where p is near 0.05 a verdict changes easily: see the range of p, too.",
+            "Puis chaque segment et chaque participant est omis tour à tour, avec les règles et les tests du fichier de l’étude. Là où p est proche de 0,05, un verdict change facilement : voyez aussi l’étendue de p.",
         );
     }
 
