@@ -8,6 +8,7 @@ use mimique_study::{Generalise, Study};
 use mimique_test_support::Random;
 use serde_json::Value;
 
+use crate::support::equivalence::equivalence;
 use crate::support::planted::{answered, cells_changed};
 use crate::support::results::text;
 use crate::support::{Raters, demo_study, export};
@@ -185,4 +186,19 @@ fn a_study_without_hypotheses_says_so_and_no_report_has_the_section_unasked() {
     let (report, _) = report(&study, &csv, Language::English);
     let words = section(&report, "Sensitivity");
     assert!(words.contains("there is no verdict to repeat"), "{words}");
+}
+
+#[test]
+fn equivalence_is_repeated_with_ranks_and_with_means() {
+    let mut study = study(None);
+    study.hypotheses = vec![equivalence("E", "believability", "method", ["lsts30", "box"], 1.0)];
+    let csv = rated(&study, 14, |_| false, |_| 4.0);
+    let (report, found) = report(&study, &csv, Language::English);
+    let tests: Vec<&Value> =
+        found["specifications"].as_array().unwrap().iter().map(|own| &own["test"]).collect();
+    assert_eq!(tests.len(), 4 * 2);
+    assert_eq!([tests[0], tests[1]], ["equivalence_of_ranks", "equivalence_of_means"]);
+    let words = section(&report, "Sensitivity");
+    assert!(words.contains("as fixed in the study file: equivalent (p < 0.001)"), "{words}");
+    assert!(words.contains("The verdict is the same in 8 of 8 specifications."), "{words}");
 }

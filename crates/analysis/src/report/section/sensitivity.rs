@@ -79,22 +79,25 @@ impl Writer<'_> {
             ["specification", "specifications"],
             ["spécification", "spécifications"],
         );
-        let sets = match (found.rules.len(), sets.len()) {
+        let choices = match (found.rules.len(), sets.len()) {
             (0, _) => language
-                .pick("the study file sets no rule of exclusion", "le fichier de l’étude ne fixe aucune règle d’exclusion")
+                .pick(
+                    "every test that can decide the hypothesis (the study file sets no rule of exclusion)",
+                    "chaque test qui peut décider l’hypothèse (le fichier de l’étude ne fixe aucune règle d’exclusion)",
+                )
                 .to_owned(),
             (rules, sets) if sets == 1 << rules => language.pick(
-                format!("every combination of the rules of exclusion, applied or not ({sets} in all)"),
-                format!("toutes les combinaisons des règles d’exclusion, appliquées ou non ({sets} en tout)"),
+                format!("every combination of the rules of exclusion, applied or not ({sets} in all), with every test that can decide the hypothesis"),
+                format!("toutes les combinaisons des règles d’exclusion, appliquées ou non ({sets} en tout), avec chaque test qui peut décider l’hypothèse"),
             ),
             (_, sets) => language.pick(
-                format!("all rules of exclusion, all but one of them, and none ({sets} sets of rules)"),
-                format!("toutes les règles d’exclusion, toutes sauf une, et aucune ({sets} ensembles de règles)"),
+                format!("all rules of exclusion, all but one of them, and none ({sets} sets of rules), with every test that can decide the hypothesis"),
+                format!("toutes les règles d’exclusion, toutes sauf une, et aucune ({sets} ensembles de règles), avec chaque test qui peut décider l’hypothèse"),
             ),
         };
         let words = language.pick(
-            format!("Every verdict is repeated under other reasonable choices: {sets}, each with every test that can decide the hypothesis. That makes {specifications} for all hypotheses. p is corrected over the hypotheses as in the rest of the report. Tests of single trials and the cumulative mixed model are not among them, because their p is too small. The estimate of min F' is the mean difference of the participants, without an interval. Participants who withdrew or declined, pilot sessions and exclusions by the researcher are the same in all."),
-            format!("Chaque verdict est répété avec d’autres choix raisonnables : {sets}, et avec chaque test qui peut décider l’hypothèse. Cela fait {specifications} pour toutes les hypothèses. p est corrigé sur les hypothèses comme dans le reste du rapport. Les tests sur les essais pris un à un et le modèle mixte cumulatif n’en font pas partie, car leur p est trop petit. L’estimation de min F' est la différence moyenne des participants, sans intervalle. Les personnes qui se sont retirées ou n’ont pas donné leur accord, les sessions pilotes et les exclusions par le chercheur sont les mêmes partout."),
+            format!("Every verdict is repeated under other reasonable choices: {choices}. That makes {specifications} for all hypotheses. p is corrected over the hypotheses as in the rest of the report. Tests of single trials and the cumulative mixed model are not among the tests, because their p is too small. The estimate of min F' is the mean difference of the participants, without an interval. Participants who withdrew or declined, pilot sessions and exclusions by the researcher are excluded in every specification."),
+            format!("Chaque verdict est répété avec d’autres choix raisonnables : {choices}. Cela fait {specifications} pour toutes les hypothèses. p est corrigé sur les hypothèses comme dans le reste du rapport. Les tests sur les essais pris un à un et le modèle mixte cumulatif n’en font pas partie, car leur p est trop petit. L’estimation de min F' est la différence moyenne des participants, sans intervalle. Les personnes qui se sont retirées ou n’ont pas donné leur accord, les sessions pilotes et les exclusions par le chercheur sont exclues dans chaque spécification."),
         );
         self.blocks.push(Block::Paragraph(words));
         self.paragraph(
@@ -121,9 +124,11 @@ impl Writer<'_> {
             .pick(format!("{}: specifications", own.id), format!("{} : spécifications", own.id));
         let id = format!("sensitivity-{}", slug(&own.id));
         let mut table = DataTable::new(id, caption, columns.chain(end.map(str::to_owned)));
-        let excluded = language.pick("excluded", "exclus").to_owned();
-        table.groups =
-            vec![(String::new(), 2), (excluded, found.rules.len()), (String::new(), end.len())];
+        if !found.rules.is_empty() {
+            let excluded = language.pick("excluded", "exclus").to_owned();
+            let rules = found.rules.len();
+            table.groups = vec![(String::new(), 2), (excluded, rules), (String::new(), end.len())];
+        }
         let first = own.of_the_study_file();
         for each in sorted(own) {
             let finding = &each.finding;
