@@ -40,6 +40,7 @@ mod power;
 mod preregistration;
 mod report;
 mod scaling;
+mod sensitivity;
 mod simulate;
 mod thresholds;
 mod trials;

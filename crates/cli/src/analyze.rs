@@ -40,6 +40,10 @@ pub struct Args {
     /// the export, as in the form Psych-DS]
     #[arg(long, value_name = "DIR")]
     versions: Option<PathBuf>,
+    /// Repeat every verdict over the rules of exclusion and the tests, and without each segment and each participant; the
+    /// report then has the section "Sensitivity". Takes time: one analysis per participant, segment and set of rules
+    #[arg(long)]
+    multiverse: bool,
     /// Folder for the report; an earlier report in it is replaced
     #[arg(long)]
     out: PathBuf,
@@ -126,8 +130,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     let faces = tracks.as_ref().zip(courses.as_ref());
     let faces = faces.map(|(tracks, courses)| MeasuredFaces { tracks, courses });
     let preview = args.preview_url.as_deref();
+    let multiverse = args.multiverse;
     let versions = StudyVersions { config_hashes: &config_hashes, served: &served };
-    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions };
+    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions, multiverse };
     let report = analyze_with(&table, &study, args.language, options).map_err(|error| {
         let file = match &error {
             ExportError::Stimuli(_) => args.stimuli.as_ref(),
@@ -154,6 +159,9 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
             "readings": report.readings.iter().map(|(id, reading)| {
                 serde_json::json!({"hypothesis": id, "reading": reading})
             }).collect::<Vec<_>>(),
+            "sensitivity": report.sensitivity.iter().map(|(id, words)| {
+                serde_json::json!({"hypothesis": id, "reading": words})
+            }).collect::<Vec<_>>(),
         });
         writeln!(out, "{summary:#}")?;
         return Ok(());
@@ -163,6 +171,15 @@ pub fn run(args: Args, json: bool) -> anyhow::Result<()> {
     writeln!(out, "{used} of {all}, {}", counted(report.trials, "trial"))?;
     for (id, reading) in &report.readings {
         writeln!(out, "{id}. {reading}")?;
+    }
+    for (id, words) in &report.sensitivity {
+        writeln!(out, "Sensitivity of {id}: {words}")?;
+    }
+    if multiverse && report.sensitivity.is_empty() {
+        writeln!(
+            out,
+            "Sensitivity: the study file states no hypothesis, so there is no verdict to repeat."
+        )?;
     }
     let files = counted(written.len(), "file");
     writeln!(out, "{files}, report: {}", page.display())?;

@@ -16,7 +16,8 @@ use crate::trials::measure::MeasureKind;
 const MOST_PAIRS: usize = 3;
 
 /// What is shown or not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum Sought {
     /// That levels differ.
     Difference,
@@ -27,7 +28,8 @@ pub(crate) enum Sought {
 }
 
 /// What the deciding test says, after the correction over all hypotheses of the study.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum Decision {
     /// It was shown.
     Shown(Sought),
@@ -43,7 +45,7 @@ pub(crate) enum Decision {
 
 /// In which unit an effect is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub enum EffectUnit {
     /// Points of a scale.
     Points,
@@ -99,8 +101,17 @@ pub(crate) fn decision(result: &HypothesisResult) -> Decision {
             _ => Decision::NotTested,
         };
     };
+    decision_by(result, p, p_difference(result))
+}
+
+/// The decision of a hypothesis by another p, and by another p of any difference where equivalence is tested.
+pub(crate) fn decision_by(
+    result: &HypothesisResult,
+    p: f64,
+    p_difference: Option<f64>,
+) -> Decision {
     if result.equivalence.is_some() {
-        let p_difference = p_difference(result).unwrap_or(1.0);
+        let p_difference = p_difference.unwrap_or(1.0);
         return Decision::Equivalence(EquivalenceVerdict::of(p, p_difference, LEVEL));
     }
     let sought = match result.test {
@@ -141,13 +152,18 @@ pub(crate) fn deciding_p_values(result: &HypothesisResult) -> Vec<(Supports, f64
     }
 }
 
-/// The differences that a row has room for: those of few pairs, by the test that decides.
-pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
-    let unit = match result.kind {
+/// The unit of differences of a measure.
+pub(crate) fn unit_of(kind: MeasureKind) -> EffectUnit {
+    match kind {
         MeasureKind::Rating | MeasureKind::Choice => EffectUnit::Points,
         MeasureKind::Recognition => EffectUnit::Shares,
         MeasureKind::ResponseTime => EffectUnit::Seconds,
-    };
+    }
+}
+
+/// The differences that a row has room for: those of few pairs, by the test that decides.
+pub(crate) fn effects(result: &HypothesisResult) -> Vec<Effect<'_>> {
+    let unit = unit_of(result.kind);
     if let Some(found) = &result.equivalence {
         let [a, b] = &found.levels;
         let effect = found.difference(result.scope).map(|own| Effect {

@@ -5,6 +5,22 @@
 //! Association 81, 826) the smallest p is therefore multiplied by the number of hypotheses, not of p values, and each
 //! following one by the number of hypotheses with a p that is not smaller.
 
+use crate::hypothesis::HypothesisResult;
+
+/// Corrects the p of every result over all of them.
+pub(crate) fn correct(results: &mut [HypothesisResult]) {
+    let p: Vec<[Option<f64>; 2]> = results.iter().map(p_values).collect();
+    for (result, [of_test, of_difference]) in results.iter_mut().zip(corrected(&p)) {
+        result.p_holm_over_hypotheses = of_test;
+        result.p_difference_holm_over_hypotheses = of_difference;
+    }
+}
+
+/// The p that tests a hypothesis, and the p of any difference where equivalence is tested.
+pub(crate) fn p_values(result: &HypothesisResult) -> [Option<f64>; 2] {
+    [result.p, result.p_difference()]
+}
+
 /// The corrected p of each hypothesis: the p that tests it, and the second p of a hypothesis of equivalence.
 pub(crate) fn corrected(p: &[[Option<f64>; 2]]) -> Vec<[Option<f64>; 2]> {
     let mut known: Vec<(f64, usize, usize)> = Vec::new();

@@ -493,7 +493,7 @@ fn between_people(
 
 /// The p that a hypothesis stands or falls by: the interaction if there is one, the overall test of
 /// several levels, or the one pair.
-fn deciding_p(people: &PersonLevel) -> Option<f64> {
+pub(crate) fn deciding_p(people: &PersonLevel) -> Option<f64> {
     deciding_test(people)?.p_that_counts()
 }
 

@@ -23,6 +23,8 @@ use crate::trials::measure::{Measure, MeasureKind};
 pub(crate) enum OtherClipsTests {
     /// Those that decide, and min F'.
     Deciding,
+    /// The linear mixed model, also where it does not decide, and min F'.
+    Linear,
     /// Those, and the cumulative model of ratings.
     All,
 }
@@ -198,7 +200,7 @@ pub(crate) fn tested(
 ) -> Option<OtherClips> {
     let units = Units::of(export, measure)?;
     let (first, _) = factors.first()?;
-    let asked = decides || tests == OtherClipsTests::All;
+    let asked = decides || tests != OtherClipsTests::Deciding;
     let linear_model = asked.then(|| linear(measure, factors, &units));
     let (min_f, mixed_model) = match factors {
         [(factor, true)] => {

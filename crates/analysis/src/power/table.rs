@@ -233,7 +233,7 @@ fn unit_code(unit: EffectUnit) -> &'static str {
         EffectUnit::Shares => "shares",
         EffectUnit::Seconds => "seconds",
         EffectUnit::Chosen => "chosen",
-        EffectUnit::ChosenOverOthers => "chosen-over-others",
+        EffectUnit::ChosenOverOthers => "chosen_over_others",
         EffectUnit::Worth => "worth",
     }
 }

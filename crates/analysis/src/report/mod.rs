@@ -17,6 +17,7 @@ use mimique_stats::Table;
 use mimique_study::Study;
 
 use crate::mimicry::tables::FaceTables;
+use crate::sensitivity::sensitivity;
 use crate::trials::error::ExportError;
 use crate::trials::export::Export;
 use crate::trials::stimulus_measures::StimulusMeasures;
@@ -34,6 +35,9 @@ pub struct Report {
     pub trials: usize,
     /// The reading of each hypothesis: identifier and words.
     pub readings: Vec<(String, String)>,
+    /// How much each verdict depends on choices of the analysis, on segments and on participants, where that was asked for:
+    /// identifier of the hypothesis and words. Empty for a study without hypotheses.
+    pub sensitivity: Vec<(String, String)>,
 }
 
 /// What a report may be made with beside the export and the study.
@@ -48,6 +52,9 @@ pub struct ReportOptions<'a> {
     pub preview: Option<&'a str>,
     /// Which study file this is and which were served: another study's answers are refused, and differences are reported.
     pub versions: StudyVersions<'a>,
+    /// Whether every verdict is repeated over the reasonable rules of exclusion and tests, and without each segment and
+    /// each participant: a section of the report, which takes time.
+    pub multiverse: bool,
 }
 
 /// Participants' faces, and how the clips moved that they saw.
@@ -72,7 +79,7 @@ pub fn analyze_with(
     language: Language,
     options: ReportOptions<'_>,
 ) -> Result<Report, ExportError> {
-    let ReportOptions { stimuli, faces, preview, versions } = options;
+    let ReportOptions { stimuli, faces, preview, versions, multiverse } = options;
     let versions = other_versions(table, study, versions)?;
     let stimuli = stimuli.map(|table| StimulusMeasures::read(table, study)).transpose()?;
     let read = |MeasuredFaces { tracks, courses }| FaceTables::read(tracks, courses);
@@ -81,11 +88,13 @@ pub fn analyze_with(
     if export.trials.is_empty() {
         return Err(export.flow.no_trial());
     }
-    let section::Sections { document, results, readings, replay } = {
+    let sensitivity = multiverse.then(|| sensitivity(table, study, &export)).transpose()?;
+    let section::Sections { document, results, readings, sensitivity, replay } = {
         let beside = section::Beside {
             stimuli: stimuli.as_ref(),
             faces: faces.as_ref(),
             versions: &versions,
+            sensitivity: sensitivity.as_ref(),
         };
         section::write(&export, study, beside, preview.map(Preview), language)
     };
@@ -97,5 +106,6 @@ pub fn analyze_with(
         people: (export.flow.people_used, export.flow.people),
         trials: export.flow.trials_used,
         readings,
+        sensitivity,
     })
 }

@@ -22,6 +22,7 @@ use crate::report::section::roc::QuestionRoc;
 use crate::report::section::stimulus_measures::MeasureCorrelation;
 use crate::report::section::traces::MeanTraces;
 use crate::scaling::BlockScale;
+use crate::sensitivity::Sensitivity;
 use crate::thresholds::BlockThresholds;
 use crate::trials::exclusion_rates::ExclusionRates;
 use crate::trials::export::{Flow, Person};
@@ -43,6 +44,9 @@ pub(crate) struct Results<'a> {
     #[serde(skip_serializing_if = "<[OtherVersion]>::is_empty")]
     pub other_versions: &'a [OtherVersion],
     pub hypotheses: Vec<HypothesisResult>,
+    /// Where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensitivity: Option<&'a Sensitivity>,
     pub confusion: Vec<NamedConfusion>,
     pub comparisons: Vec<Comparison>,
     pub choices: Vec<Choices>,

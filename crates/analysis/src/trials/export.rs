@@ -194,7 +194,7 @@ pub(crate) struct Export {
     /// Whom BS.1534 leaves out of panels, a block each that has a hidden reference.
     pub screening: Vec<Screening>,
     /// Of the trials; found when first asked for.
-    combinations: OnceLock<Combinations>,
+    pub(super) combinations: OnceLock<Combinations>,
 }
 
 /// In the place of the status of somebody whom the researcher excluded.

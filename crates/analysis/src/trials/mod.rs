@@ -9,6 +9,7 @@ pub(crate) mod exclusion_rates;
 pub(crate) mod export;
 pub(crate) mod matching;
 pub(crate) mod measure;
+mod omission;
 pub(crate) mod reason;
 pub(crate) mod rule;
 pub(crate) mod screening;

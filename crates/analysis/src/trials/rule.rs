@@ -1,8 +1,10 @@
 //! The rules by which a study leaves people and trials out: values; their words are made where somebody reads them.
 
 use mimique_locale::Language;
-use mimique_study::Study;
+use mimique_study::{Component, Study};
 use serde::{Serialize, Serializer};
+
+use crate::trials::reason::Reason;
 
 /// A rule of exclusion. People come first, then trials.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +57,45 @@ impl Rule {
             rules.shortest_rt_ms.map(Self::ShortestRtMs),
         ];
         all.into_iter().flatten().collect()
+    }
+
+    /// Removes the rule from a study file.
+    pub(crate) fn remove_from(&self, study: &mut Study) {
+        if let Self::Bs1534(block) = self {
+            if let Some(Component::Panel(panel)) = study.components.get_mut(block)
+                && let Some(keys) = panel.0.as_object_mut()
+            {
+                keys.remove("exclude");
+            }
+            return;
+        }
+        let Some(rules) = &mut study.exclusions else { return };
+        match self {
+            Self::Incomplete => rules.incomplete = false,
+            Self::FailedAttentionChecks(_) => rules.failed_attention_checks = None,
+            Self::SoundNotHeard => rules.sound_not_heard = false,
+            Self::StraightLining { .. } => rules.straight_lining = None,
+            Self::LateFrameShare(_) => rules.late_frame_share = None,
+            Self::LongestFrameMs(_) => rules.longest_frame_ms = None,
+            Self::SoundOffsetMs(_) => rules.sound_offset_ms = None,
+            Self::ShortestRtMs(_) => rules.shortest_rt_ms = None,
+            Self::Bs1534(_) => {}
+        }
+    }
+
+    /// The reason that people and trials have whom the rule excludes.
+    pub(crate) fn reason(&self) -> Reason {
+        match self {
+            Self::Incomplete => Reason::Incomplete,
+            Self::FailedAttentionChecks(_) => Reason::AttentionChecks,
+            Self::SoundNotHeard => Reason::SoundNotHeard,
+            Self::StraightLining { .. } => Reason::StraightLining,
+            Self::LateFrameShare(_) => Reason::LateFrames,
+            Self::LongestFrameMs(_) => Reason::LongFrame,
+            Self::SoundOffsetMs(_) => Reason::SoundOffset,
+            Self::ShortestRtMs(_) => Reason::AnsweredTooSoon,
+            Self::Bs1534(_) => Reason::Bs1534,
+        }
     }
 
     /// As `results.json` has it: the study file's key and its limit.

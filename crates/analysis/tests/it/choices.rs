@@ -4,7 +4,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use mimique_analysis::{Parameters, PowerOptions, Report, Simulation, analyze, power};
+use mimique_analysis::{
+    Parameters, PowerOptions, Report, ReportOptions, Simulation, analyze, analyze_with, power,
+};
 use mimique_locale::Language;
 use mimique_stats::Table;
 use mimique_study::{Severity, Study};
@@ -321,9 +323,9 @@ fn power_counts_choices_and_the_preregistration_says_the_test_that_decides() {
     let found = power(&study, "hash", &parameters, &options, &|| {}).unwrap();
     let own = &found.points[0].hypotheses[0];
     assert!(own.effect);
-    assert!(own.power.recommended.share > 0.8, "{:?}", own.power);
+    assert!(own.power.deciding.share > 0.8, "{:?}", own.power);
     let none = own.false_positives.unwrap();
-    assert!(none.recommended.share <= 0.15, "{none:?}");
+    assert!(none.deciding.share <= 0.15, "{none:?}");
     for (language, words) in [
         (Language::English, "decides: equal worths in the Bradley-Terry model"),
         (Language::French, "décide : égalité des valeurs dans le modèle de Bradley-Terry"),
@@ -388,4 +390,29 @@ fn a_test_of_choices_is_refused_where_nothing_is_chosen_between() {
     parted["sequence"]["components"] = json!(["first"]);
     parted["hypotheses"][0]["levels"] = json!(["box", "lsts30", "real"]);
     assert_eq!(problems(&parted), [(place("factors/0"), "pairs-in-parts".to_owned())]);
+}
+
+/// Of two methods the share of choices is the estimate, and a direction belongs to the verdict.
+#[test]
+fn choices_of_two_methods_have_a_verdict_with_its_direction_in_every_specification() {
+    let study = study(&two_methods());
+    let parameters = planted(&study, &[("box", -0.7), ("lsts30", 0.7)], 0.0);
+    let simulation = Simulation::new(&study, "hash", &parameters, 11).unwrap();
+    let csv = simulated_export(&simulation, &study, 30);
+    let table = Table::parse(csv.as_bytes()).unwrap();
+    let options = ReportOptions { multiverse: true, ..ReportOptions::default() };
+    let report = analyze_with(&table, &study, Language::English, options).unwrap();
+    let results: Value = serde_json::from_str(file(&report, "results.json")).unwrap();
+    let own = &results["sensitivity"]["hypotheses"][0];
+    for each in own["specifications"].as_array().unwrap() {
+        assert_eq!(each["test"], "person_means");
+        assert_eq!(each["verdict"]["direction"]["higher"], "lsts30", "{each}");
+        assert_eq!(each["estimate"]["unit"], "chosen", "{each}");
+        assert_eq!(each["estimate"]["levels"], json!(["box", "lsts30"]));
+        assert!(number(&each["estimate"]["value"]) < 0.35, "{each}");
+    }
+    assert_eq!(own["dependence"], json!([]));
+    let said = &report.sensitivity[0].1;
+    assert!(said.contains("is chosen more often"), "{said}");
+    assert!(!file(&report, "figures/sensitivity-h.svg").contains("NaN"));
 }

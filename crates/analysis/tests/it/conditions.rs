@@ -244,11 +244,11 @@ fn power_grows_with_the_difference_and_is_alpha_without() {
     assert_eq!(point.people_used, 24.0);
     let found = &point.hypotheses[0];
     let none = found.false_positives.unwrap();
-    assert!((0.035..=0.06).contains(&none.recommended.share), "{}", none.recommended.share);
+    assert!((0.035..=0.06).contains(&none.deciding.share), "{}", none.deciding.share);
     assert!(none.as_in_the_thesis.share > 0.3, "{}", none.as_in_the_thesis.share);
-    assert_eq!(none.recommended.undefined, 0);
+    assert_eq!(none.deciding.undefined, 0);
     // Spread of a person's mean over 54 trials: sqrt(0.6^2 + 1/54) = 0.615, and what rounding adds.
-    let share = found.power.recommended.share;
+    let share = found.power.deciding.share;
     assert!((0.85..=0.97).contains(&share), "{share}");
 }
 
@@ -262,8 +262,8 @@ fn a_difference_of_response_times_is_planted_too() {
     parameters.times.effects = [("assigned_condition".to_owned(), shifts.into())].into();
     let result = power(&study, &hash, &parameters, &options(16, 40), &|| {}).unwrap();
     let found = &result.points[0].hypotheses[0];
-    assert_eq!(found.power.recommended.positive, 40);
-    assert!(found.false_positives.unwrap().recommended.positive < 10);
+    assert_eq!(found.power.deciding.positive, 40);
+    assert!(found.false_positives.unwrap().deciding.positive < 10);
     // The default parameters of a study plant the difference that its hypothesis looks for.
     let own = Parameters::for_study(&study);
     let effects = &own.times.effects["assigned_condition"];

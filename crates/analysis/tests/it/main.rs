@@ -20,6 +20,7 @@ mod report;
 mod roc;
 mod scaling;
 mod scripts;
+mod sensitivity;
 mod simulate;
 mod sound;
 mod support;

@@ -94,7 +94,7 @@ fn a_hypothesis_about_other_clips_is_decided_by_the_linear_mixed_model() {
     let found = power(&study, "hash", &parameters, &options, &|| {}).unwrap();
     let own = &found.points[0].hypotheses[at].power;
     assert_eq!((own.min_f.unwrap().runs, own.mixed.unwrap().runs), (3, 3));
-    assert_eq!(own.mixed.unwrap().positive, own.recommended.positive);
+    assert_eq!(own.mixed.unwrap().positive, own.deciding.positive);
     for (language, words) in [
         (Language::English, "decides: F test of a linear mixed model"),
         (Language::French, "décide : test F d’un modèle linéaire mixte"),
@@ -141,7 +141,7 @@ fn clips_that_differ_by_chance_make_no_false_positives_of_the_linear_model() {
     let positive = |study: &Study| -> Vec<u64> {
         let found = power(study, "hash", &parameters, &options, &|| {}).unwrap();
         let own = found.points[0].hypotheses.iter();
-        own.map(|own| own.false_positives.unwrap().recommended.positive).collect()
+        own.map(|own| own.false_positives.unwrap().deciding.positive).collect()
     };
     let (of_these, of_others) = (positive(&study), positive(&others));
     // Of 150 draws of 5 %, 15 are as many as in 99 % of cases.

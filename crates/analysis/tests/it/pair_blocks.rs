@@ -124,9 +124,9 @@ fn power_is_that_of_the_dealt_pairs_and_the_preregistration_says_how_they_are_de
     };
     let found = power(&study, "hash", &parameters, &options, &|| {}).unwrap();
     let own = &found.points[0].hypotheses[0];
-    assert!(own.effect && own.power.recommended.share > 0.8, "{:?}", own.power);
+    assert!(own.effect && own.power.deciding.share > 0.8, "{:?}", own.power);
     let none = own.false_positives.unwrap();
-    assert!(none.recommended.share <= 0.15, "{none:?}");
+    assert!(none.deciding.share <= 0.15, "{none:?}");
     for (language, words) in [
         (Language::English, "Each participant is shown 12 of them"),
         (Language::French, "Chaque participant en voit 12"),

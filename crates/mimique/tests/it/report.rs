@@ -148,3 +148,37 @@ fn answers_to_a_published_file_that_is_served_again_are_its_own() {
     let report = std::fs::read_to_string(out.join("report.md")).unwrap();
     assert!(!report.contains("another version"), "the answers are to this file");
 }
+
+#[test]
+fn verdicts_are_repeated_over_specifications_where_that_is_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let [export, _] = answers(folder.path());
+    let out = folder.path().join("report");
+    let analyze = ["analyze", &export, "--study", &demo(), "--out", &text(&out)];
+    ok(&analyze);
+    assert!(!out.join("tables/sensitivity.csv").exists());
+    let said = ok(&[&analyze[..], &["--multiverse"]].concat());
+    assert!(said.contains("Sensitivity of H1: "), "{said}");
+    assert!(said.contains(" specifications."), "{said}");
+    let table = std::fs::read_to_string(out.join("tables/sensitivity.csv")).unwrap();
+    let heading = table.lines().next().unwrap();
+    assert!(heading.contains("as fixed in the study file,excluded: incomplete,test"), "{heading}");
+    for name in ["sensitivity-h1.svg", "sensitivity-h1.pdf"] {
+        assert!(out.join("figures").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn a_study_without_hypotheses_has_no_verdict_to_repeat() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = mimique_study::parse(&std::fs::read_to_string(demo()).unwrap()).unwrap();
+    study.as_object_mut().unwrap().remove("hypotheses");
+    let file = folder.path().join("study.json");
+    std::fs::write(&file, study.to_string()).unwrap();
+    let (file, simulated) = (text(&file), folder.path().join("simulated"));
+    let out = text(&folder.path().join("report"));
+    ok(&["simulate", &file, "-n", "8", "--seed", "1", "--out", &text(&simulated)]);
+    let export = text(&simulated.join("demo_responses.csv"));
+    let said = ok(&["analyze", &export, "--study", &file, "--out", &out, "--multiverse"]);
+    assert!(said.contains("states no hypothesis, so there is no verdict to repeat"), "{said}");
+}

@@ -111,7 +111,8 @@ fn make(
         _ => None,
     };
     let preview = Some(preview);
-    let options = ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions };
+    let options =
+        ReportOptions { stimuli: stimuli.as_ref(), faces, preview, versions, multiverse: false };
     analyze_with(&table, study, language, options).map_err(no_report)
 }
 

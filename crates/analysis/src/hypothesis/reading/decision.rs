@@ -36,7 +36,7 @@ pub(crate) fn deciding_p(language: Language, result: &HypothesisResult) -> Vec<S
 }
 
 /// The decision in words.
-fn decision(language: Language, decision: Decision) -> &'static str {
+pub(crate) fn decision_in_words(language: Language, decision: Decision) -> &'static str {
     match decision {
         Decision::Shown(Sought::Difference) => language.pick(
             "null hypothesis of no difference rejected",
@@ -73,7 +73,7 @@ fn decision(language: Language, decision: Decision) -> &'static str {
 /// The decision of a hypothesis, and of which clips it is where these are not others, too.
 pub(crate) fn decision_of(language: Language, result: &HypothesisResult) -> String {
     let found = decided(result);
-    let words = decision(language, found);
+    let words = decision_in_words(language, found);
     match (result.scope, found) {
         (ClipScope::These, found) if found != Decision::NotTested => {
             format!("{words}{}", language.pick(", for these clips", ", pour ces extraits"))

@@ -9,6 +9,7 @@ mod equivalence;
 mod matching;
 mod other_clips;
 mod pairs;
+mod sensitivity;
 mod versions;
 
 use mimique_locale::Language;
@@ -23,7 +24,7 @@ use crate::hypothesis::undefined::TestOutcome;
 use crate::naming::Naming;
 use crate::naming::people_counted;
 use crate::trials::measure::MeasureKind;
-pub(crate) use decision::{deciding_p, decision_of, mark, supports};
+pub(crate) use decision::{deciding_p, decision_in_words, decision_of, mark, supports};
 pub(crate) use detection::d_prime_by;
 pub(crate) use distribution::distribution;
 pub(crate) use effect_size::{effect_size, effect_size_number, effect_sizes, without_zero};
@@ -33,6 +34,7 @@ pub(crate) use equivalence::{
 pub(crate) use matching::{unequal_exclusion, unmatched};
 pub(crate) use other_clips::{f_of, other_clips};
 use pairs::{each_pair, many_pairs, topic};
+pub(crate) use sensitivity::{dependence, influence, test_choice, test_choice_short, verdict_of};
 pub(crate) use versions::other_version;
 
 /// The level of a test.

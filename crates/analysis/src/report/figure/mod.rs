@@ -13,6 +13,7 @@ pub(crate) mod people;
 mod roc;
 mod scatter;
 mod shares;
+mod specification_curve;
 mod stacked;
 mod traces;
 
@@ -26,6 +27,7 @@ pub(crate) use mixed_model::{deviations, model_shares};
 pub(crate) use roc::roc_curves;
 pub(crate) use scatter::{ScatterPanel, scatter};
 pub(crate) use shares::shares;
+pub(crate) use specification_curve::{Choices, CurvePoint, CurveWords, specification_curve};
 pub(crate) use traces::{TraceSpans, traces};
 
 use mimique_locale::Language;

@@ -28,13 +28,10 @@ pub(crate) fn tested(writer: &Writer<'_>) -> Vec<HypothesisResult> {
             )
         })
         .collect();
-    let p: Vec<[Option<f64>; 2]> =
-        results.iter().map(|result| [result.p, result.p_difference()]).collect();
+    family::correct(&mut results);
     let tested = results.iter().filter(|result| result.p.is_some()).count();
-    for (result, [corrected, difference]) in results.iter_mut().zip(family::corrected(&p)) {
-        result.p_holm_over_hypotheses = corrected;
-        result.p_difference_holm_over_hypotheses = difference;
-        if corrected.is_some() && tested > 1 {
+    for result in &mut results {
+        if result.p_holm_over_hypotheses.is_some() && tested > 1 {
             let language = writer.naming.language;
             let first = reading::over_hypotheses(language, result, tested);
             result.reading = format!("{first} {}", result.reading);

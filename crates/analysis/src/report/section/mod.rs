@@ -21,6 +21,7 @@ pub(crate) mod paper_participants;
 pub(crate) mod people;
 pub(crate) mod recognition;
 pub(crate) mod roc;
+pub(crate) mod sensitivity;
 pub(crate) mod stimulus_measures;
 pub(crate) mod timing;
 pub(crate) mod trace_tests;
@@ -42,6 +43,7 @@ use crate::report::preview::Preview;
 use crate::report::replay;
 use crate::report::results::Results;
 use crate::report::section::hypotheses::tested;
+use crate::sensitivity::Sensitivity;
 use crate::trials::asked_question::AskedQuestion;
 use crate::trials::export::Export;
 use crate::trials::measure::Measure;
@@ -56,6 +58,7 @@ pub(crate) struct Sections {
     pub document: Document,
     pub results: String,
     pub readings: Vec<(String, String)>,
+    pub sensitivity: Vec<(String, String)>,
     pub replay: Vec<ReportFile>,
 }
 
@@ -87,6 +90,8 @@ pub(crate) struct Beside<'a> {
     pub stimuli: Option<&'a StimulusMeasures>,
     pub faces: Option<&'a FaceTables>,
     pub versions: &'a [OtherVersion],
+    /// Where it was asked for.
+    pub sensitivity: Option<&'a Sensitivity>,
 }
 
 /// Writes all sections.
@@ -109,6 +114,7 @@ pub(crate) fn write(
             flow: Some(&export.flow),
             people: &export.people,
             other_versions: beside.versions,
+            sensitivity: beside.sensitivity,
             ..Results::default()
         },
         factors: factors_in_use(export, study),
@@ -130,6 +136,7 @@ pub(crate) fn write(
     writer.in_short(&hypotheses);
     writer.participants();
     writer.hypotheses(&hypotheses);
+    let sensitivity = beside.sensitivity.map(|found| writer.sensitivity(found));
     let readings = hypotheses.iter().map(|h| (h.id.clone(), h.reading.clone())).collect();
     let parts = of_measures(&writer, &measures, &hypotheses);
     for part in parts {
@@ -148,6 +155,7 @@ pub(crate) fn write(
         document: Document { title, subtitle, blocks: writer.blocks },
         results,
         readings,
+        sensitivity: sensitivity.unwrap_or_default(),
         replay,
     }
 }
