@@ -36,33 +36,41 @@ pub(crate) struct Influence {
 /// The influence of segments and of participants on each hypothesis, in the order of the study file, by the rules and the
 /// tests of the study file. A kind of unit of which there are fewer than two is absent.
 pub(super) fn of_hypotheses(export: &Export, study: &Study) -> Vec<Vec<Influence>> {
-    let mut of_hypotheses: Vec<Vec<Influence>> = vec![Vec::new(); study.hypotheses.len()];
     let segments: Vec<String> = export.segments().iter().map(ToString::to_string).collect();
-    let without_segment = |place: usize| export.without_segment(&segments[place]);
     let people = export.answering_people();
-    let ids = people.iter().map(|person| export.people[*person].id.clone()).collect();
+    let ids: Vec<String> = people.iter().map(|person| export.people[*person].id.clone()).collect();
+    let without_segment = |place: usize| export.without_segment(&segments[place]);
     let without_person = |place: usize| export.without_person(people[place]);
-    let units: [(OmittedUnit, Vec<String>, &(dyn Fn(usize) -> Export + Sync)); 2] = [
-        (OmittedUnit::Segment, segments.clone(), &without_segment),
-        (OmittedUnit::Participant, ids, &without_person),
-    ];
-    for (unit, names, without) in units {
-        if names.len() < 2 {
-            continue;
-        }
-        let findings: Vec<Vec<Finding>> = (0..names.len())
-            .into_par_iter()
-            .map(|place| findings(&without(place), study))
-            .collect();
-        for (hypothesis, influence) in of_hypotheses.iter_mut().enumerate() {
-            let omissions = names.iter().zip(&findings).map(|(name, own)| Omission {
-                omitted: name.clone(),
-                finding: own[hypothesis].clone(),
-            });
-            influence.push(Influence { unit, omissions: omissions.collect() });
-        }
+    let of_segments = each_omitted(OmittedUnit::Segment, &segments, without_segment, study);
+    let of_people = each_omitted(OmittedUnit::Participant, &ids, without_person, study);
+    let own = |place: usize| {
+        let both = [of_segments.get(place), of_people.get(place)];
+        both.into_iter().flatten().cloned().collect()
+    };
+    (0..study.hypotheses.len()).map(own).collect()
+}
+
+/// Each unit of a kind omitted in turn, per hypothesis; `without` is the export without the unit at a place. Empty if there
+/// are fewer than two units.
+fn each_omitted(
+    unit: OmittedUnit,
+    names: &[String],
+    without: impl Fn(usize) -> Export + Sync,
+    study: &Study,
+) -> Vec<Influence> {
+    if names.len() < 2 {
+        return Vec::new();
     }
-    of_hypotheses
+    let findings: Vec<Vec<Finding>> =
+        (0..names.len()).into_par_iter().map(|place| findings(&without(place), study)).collect();
+    let of_hypothesis = |hypothesis: usize| {
+        let omissions = names.iter().zip(&findings).map(|(name, own)| Omission {
+            omitted: name.clone(),
+            finding: own[hypothesis].clone(),
+        });
+        Influence { unit, omissions: omissions.collect() }
+    };
+    (0..study.hypotheses.len()).map(of_hypothesis).collect()
 }
 
 /// What the report's tests find of each hypothesis.

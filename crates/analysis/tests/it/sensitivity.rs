@@ -198,7 +198,7 @@ fn equivalence_is_repeated_with_ranks_and_with_means() {
         found["specifications"].as_array().unwrap().iter().map(|own| &own["test"]).collect();
     assert_eq!(tests.len(), 4 * 2);
     assert_eq!([tests[0], tests[1]], ["equivalence_of_ranks", "equivalence_of_means"]);
-    let words = section(&report, "Sensitivity");
+    let words = &report.sensitivity[0].1;
     assert!(words.contains("as fixed in the study file: equivalent (p < 0.001)"), "{words}");
     assert!(words.contains("The verdict is the same in 8 of 8 specifications."), "{words}");
 }
