@@ -206,13 +206,7 @@ pub(crate) fn test_hypothesis(
     reading += &conditions::words(naming, &people_by_condition, kind);
     let distributions =
         measure.as_ref().map_or_else(Vec::new, |own| distributions(export, study, hypothesis, own));
-    let factor = hypothesis.factors.first().map_or("", String::as_str);
-    let sizes = reading::effect_sizes(naming, &people, factor);
-    let spoken = distributions.iter().filter_map(|own| reading::distribution(naming, own, kind));
-    for words in sizes.into_iter().chain(spoken) {
-        reading.push(' ');
-        reading += &words;
-    }
+    reading += &sizes_and_distributions(naming, hypothesis, &people, &distributions, kind);
     HypothesisResult {
         id: hypothesis.id.clone(),
         statement: hypothesis.statement.in_language(language.code()).to_owned(),
@@ -287,6 +281,20 @@ fn matching_of(export: &Export, hypothesis: &Hypothesis, measure: &Measure) -> O
     let levels: Vec<String> = hypothesis.levels.iter().map(ToString::to_string).collect();
     let factor = measure.factor(export, name, if place == 0 { &levels } else { &[] });
     (factor.levels.len() > 1).then(|| measure.matching(export, &factor))
+}
+
+/// Standardised effect sizes, floor and ceiling effects and unequal spreads, after the reading of the tests.
+fn sizes_and_distributions(
+    naming: &Naming<'_>,
+    hypothesis: &Hypothesis,
+    people: &PersonLevel,
+    distributions: &[AnswerDistribution],
+    kind: MeasureKind,
+) -> String {
+    let factor = hypothesis.factors.first().map_or("", String::as_str);
+    let sizes = reading::effect_sizes(naming, people, factor);
+    let spoken = distributions.iter().filter_map(|own| reading::distribution(naming, own, kind));
+    sizes.into_iter().chain(spoken).map(|words| format!(" {words}")).collect()
 }
 
 /// How answers are distributed at the levels of each factor that is tested, where these are few.

@@ -55,7 +55,7 @@ fn statistics_name_the_file_and_the_remedy() {
             "line 2: no rows below the header; give at least one row",
         ),
         (describe(&ragged, "a"), &ragged, "line 3: 3 cells, the header has 2; check quotes"),
-        (describe(&table, "c"), &table, "the columns are \"a\", \"b\""),
+        (describe(&table, "c"), &table, "the columns are \"a\" and \"b\""),
         (describe(&table, "b"), &table, "line 3: \"x\" is not a number; give a number"),
         (analyze(&absent_csv, &study), &absent_csv, no_file),
         (analyze(&empty, &study), &empty, "the file is empty"),

@@ -357,7 +357,7 @@ mod tests {
             table.numbers("y").unwrap_err().to_string(),
             "column \"y\": line 3: \"x\" is not a number; give a number, or leave the cell blank or NA if it is missing"
         );
-        assert!(table.numbers("q").unwrap_err().to_string().contains("\"y\", \"g\""));
+        assert!(table.numbers("q").unwrap_err().to_string().contains("\"y\" and \"g\""));
         assert!(Table::parse(b"y\ninf\n").unwrap().numbers("y").is_err());
     }
 
