@@ -199,7 +199,7 @@ fn without_an_effect_in_the_parameters_nothing_is_called_power() {
     let note = "hold no effect of its factors on its response";
     let table = power_markdown(&result, Language::English);
     assert_eq!(table.matches(note).count(), 3);
-    assert!(table.contains("**HY**\n\nThe parameters hold no effect"), "{table}");
+    assert!(table.contains("**HY**, for other clips\n\nThe parameters hold no effect"), "{table}");
     let curve = mimique_analysis::power_curve(&result, Language::English);
     assert_eq!(curve.matches("no effect in the parameters").count(), 3);
 }

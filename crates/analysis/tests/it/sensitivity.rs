@@ -118,12 +118,12 @@ fn an_effect_of_late_trials_alone_depends_on_the_rule_about_late_frames() {
         (
             Language::English,
             "Sensitivity",
-            "The verdict depends on the rule that excludes trials with more than 20 % late frames: without it, a difference was shown, ",
+            "The verdict depends on the rule that excludes trials with more than 20 % late frames. Without it: null hypothesis of no difference rejected, ",
         ),
         (
             Language::French,
             "Sensibilité",
-            "Le verdict dépend de la règle qui exclut les essais ayant plus de 20 % d’images en retard : sans elle, une différence a été montrée, ",
+            "Le verdict dépend de la règle qui exclut les essais ayant plus de 20 % d’images en retard. Sans elle : hypothèse nulle d’absence de différence rejetée, ",
         ),
     ] {
         let (report, found) = report(&study, &csv, language);
@@ -148,7 +148,7 @@ fn a_verdict_of_one_outlying_clip_depends_on_that_segment() {
     let joy = clips.iter().find(|clip| clip.factors["expression"].to_string() == "joy").unwrap();
     let words = section(&report, "Sensitivity");
     let expected = format!(
-        "The verdict depends on 1 of the 6 segments: without segment {}, no difference",
+        "The verdict depends on 1 of the 6 segments: without segment {}: null hypothesis of no difference not rejected",
         joy.segment
     );
     assert!(words.contains(&expected), "{expected}\n{words}");
@@ -169,7 +169,7 @@ fn a_verdict_of_six_people_depends_on_each_of_them() {
     let mean = |cell: Cell<'_>| if is_lsts(cell) { 6.0 } else { 2.0 };
     let (report, _) = report(&study, &rated(&study, 6, |_| false, mean), Language::English);
     let words = section(&report, "Sensitivity");
-    assert!(words.contains("The verdict depends on 6 of the 6 participants: without participant p0001, no difference was shown (p = 0.062)"), "{words}");
+    assert!(words.contains("The verdict depends on 6 of the 6 participants: without participant p0001: null hypothesis of no difference not rejected (p = 0.062)"), "{words}");
     assert!(words.contains("; the others are in the table."), "{words}");
 }
 

@@ -80,6 +80,12 @@ fn linear(
 ) -> Vec<String> {
     let language = naming.language;
     let numbers = format!("{}, {}", f_of(language, model), language.p(model.p));
+    let name = match kind {
+        MeasureKind::Choice => {
+            language.pick("linear model of choices", "modèle linéaire des choix")
+        }
+        _ => language.pick("linear mixed model", "modèle linéaire mixte"),
+    };
     let factor = factors.first().map_or("", String::as_str);
     let mut sentences = vec![match (factors, model.p < LEVEL) {
         ([a, b, ..], true) => language.pick(
@@ -91,12 +97,12 @@ fn linear(
             format!("que l’effet du facteur {} dépende du facteur {} n’a pas été montré par le modèle linéaire mixte ({numbers}) ; cela ne prouve pas qu’il n’en dépend pas.", naming.factor(a), naming.factor(b)),
         ),
         (_, true) => language.pick(
-            format!("by the linear mixed model the levels of {} differ ({numbers}).", naming.factor(factor)),
-            format!("selon le modèle linéaire mixte, les niveaux du facteur {} diffèrent ({numbers}).", naming.factor(factor)),
+            format!("by the {name} the levels of {} differ ({numbers}).", naming.factor(factor)),
+            format!("selon le {name}, les niveaux du facteur {} diffèrent ({numbers}).", naming.factor(factor)),
         ),
         (_, false) => language.pick(
-            format!("the linear mixed model has shown no effect of {} ({numbers}); that is no proof that there is none.", naming.factor(factor)),
-            format!("le modèle linéaire mixte n’a montré aucun effet du facteur {} ({numbers}) ; cela ne prouve pas qu’il n’y en a pas.", naming.factor(factor)),
+            format!("the {name} has shown no effect of {} ({numbers}); that is no proof that there is none.", naming.factor(factor)),
+            format!("le {name} n’a montré aucun effet du facteur {} ({numbers}) ; cela ne prouve pas qu’il n’y en a pas.", naming.factor(factor)),
         ),
     }];
     // More pairs stand in the table of tests.

@@ -119,16 +119,16 @@ fn dependence_sentence(
             let rule = rule(*place);
             language.pick(
                 format!(
-                    "The verdict depends on the rule that excludes {rule}: without it, {then}."
+                    "The verdict depends on the rule that excludes {rule}. Without it: {then}."
                 ),
-                format!("Le verdict dépend de la règle qui exclut {rule} : sans elle, {then}."),
+                format!("Le verdict dépend de la règle qui exclut {rule}. Sans elle : {then}."),
             )
         }
         [Change::Test(test)] => {
             let test = test_choice(language, own.kind, *test);
             language.pick(
-                format!("The verdict depends on the test: by {test}, {then}."),
-                format!("Le verdict dépend du test : selon {test}, {then}."),
+                format!("The verdict depends on the test. By {test}: {then}."),
+                format!("Le verdict dépend du test. Selon {test} : {then}."),
             )
         }
         changes => {
@@ -144,8 +144,8 @@ fn dependence_sentence(
             });
             let words = words.collect::<Vec<_>>().join(language.pick(" and ", " et "));
             language.pick(
-                format!("The verdict depends on several choices together: {words}, {then}."),
-                format!("Le verdict dépend de plusieurs choix réunis : {words}, {then}."),
+                format!("The verdict depends on several choices together ({words}): {then}."),
+                format!("Le verdict dépend de plusieurs choix réunis ({words}) : {then}."),
             )
         }
     }
@@ -180,8 +180,8 @@ pub(crate) fn influence(
         let verdict = verdict_of(naming, own, &each.finding);
         let p = p_of(language, &each.finding);
         language.pick(
-            format!("without {one} {}, {verdict} ({p})", each.omitted),
-            format!("sans {one} {}, {verdict} ({p})", each.omitted),
+            format!("without {one} {}: {verdict} ({p})", each.omitted),
+            format!("sans {one} {} : {verdict} ({p})", each.omitted),
         )
     });
     let named = named.collect::<Vec<_>>().join(language.pick("; ", " ; "));
