@@ -38,9 +38,14 @@ pub fn folder() -> PathBuf {
     dist().with_file_name("web-packed")
 }
 
+/// The name of a page's forms, without their ending.
+pub fn stem(bytes: &[u8]) -> String {
+    hex::encode(Sha256::digest(bytes))
+}
+
 /// Compresses a page, unless the same content has been compressed before.
 pub fn pack(name: &str, bytes: &[u8]) -> Result<Packed> {
-    let stem = hex::encode(Sha256::digest(bytes));
+    let stem = stem(bytes);
     let for_participants = !RESEARCHERS.contains(&name);
     let form = |ending: &str, compress: &dyn Fn() -> io::Result<Vec<u8>>| -> io::Result<usize> {
         let path = folder().join(format!("{stem}.{ending}"));
@@ -63,7 +68,7 @@ pub fn pack(name: &str, bytes: &[u8]) -> Result<Packed> {
     Ok(Packed { stem, gzip, brotli })
 }
 
-/// Removes the forms of pages that no longer exist; `stems` are those of the pages that do.
+/// Removes the forms of all pages but those named by `stems`.
 pub fn remove_all_but(stems: &[String]) -> Result<()> {
     for entry in fs::read_dir(folder())? {
         let path = entry?.path();

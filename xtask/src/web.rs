@@ -340,8 +340,14 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
         minify(esbuild, &mut files)?;
     }
 
+    let dist = dist();
+    fs::create_dir_all(&dist)?;
+    let mut earlier = Vec::new();
+    collect(&dist, "", &mut earlier)?;
+
     say("the pages, in bytes, with gzip and with brotli:");
-    let mut stems = Vec::new();
+    // The program may be compiled at the same time, with the pages that were there before.
+    let mut stems: Vec<String> = earlier.iter().map(|(_, bytes)| packed::stem(bytes)).collect();
     for (name, bytes) in &files {
         let small = packed::pack(name, bytes)?;
         say(&format!("  {name:32} {:>9} {:>9} {:>9}", bytes.len(), small.gzip, small.brotli));
@@ -349,11 +355,7 @@ fn gather(esbuild: Option<&Path>) -> Result<()> {
     }
     packed::remove_all_but(&stems)?;
 
-    let dist = dist();
-    fs::create_dir_all(&dist)?;
-    let mut stale = Vec::new();
-    collect(&dist, "", &mut stale)?;
-    for (name, _) in stale.iter().filter(|(n, _)| !files.iter().any(|(f, _)| f == n)) {
+    for (name, _) in earlier.iter().filter(|(n, _)| !files.iter().any(|(f, _)| f == n)) {
         fs::remove_file(dist.join(name))?;
     }
     for (name, bytes) in &files {

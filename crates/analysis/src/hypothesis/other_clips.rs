@@ -223,7 +223,7 @@ pub(crate) fn of_choices(
     if segment.levels.is_empty() || segment.codes.contains(&Factor::MISSING) {
         return None;
     }
-    let asked = decides || tests == OtherClipsTests::All;
+    let asked = decides || tests != OtherClipsTests::Deciding;
     let linear_model = asked.then(|| match linear_comparison_model(data, segment) {
         Err(refusal) => Outcome::undefined(refusal),
         Ok(outcome) => outcome.map(comparisons_told).map_reason(Why::from),
