@@ -122,6 +122,7 @@ fn parameters(clip_sd: f64, taste_sd: f64) -> Value {
             "effects": {},
             "interactions": [],
         } },
+        "times": { "effects": {} },
         "careless": { "share": 0 },
         "dropout": { "declined": 0, "perTrial": 0 },
     })
