@@ -162,13 +162,17 @@ impl TestChoice {
                     return None;
                 };
                 let [pair] = model.pairs.as_slice() else { return None };
-                let levels = [&pair.a, &pair.b];
                 if result.kind == MeasureKind::Choice {
-                    let ends = pair.interval_95.map(|end| 0.5 + end);
-                    let own = of(0.5 + pair.difference, Some(ends), levels);
+                    let [low, high] = pair.interval_95;
+                    // As the estimates of the other tests of choices.
+                    let (difference, ends, levels) = match pair.a <= pair.b {
+                        true => (pair.difference, [low, high], [&pair.a, &pair.b]),
+                        false => (-pair.difference, [-high, -low], [&pair.b, &pair.a]),
+                    };
+                    let own = of(0.5 + difference, Some(ends.map(|end| 0.5 + end)), levels);
                     return Some(Estimate { unit: Some(EffectUnit::Chosen), ..own });
                 }
-                Some(of(pair.difference, Some(pair.interval_95), levels))
+                Some(of(pair.difference, Some(pair.interval_95), [&pair.a, &pair.b]))
             }
             Self::MinF => {
                 let [pair] = result.recommended.pairs.as_slice() else { return None };
