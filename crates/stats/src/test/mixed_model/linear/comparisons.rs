@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::degrees::Satterthwaite;
 use super::reml::{Data, RandomTerm};
-use super::{LinearEffect, LinearPair, corrected, determined};
-use crate::distributions::tail::{Tail, f_upper, t_quantile_upper, t_two_sided};
+use super::{LinearEffect, LinearPair, determined, pairs};
+use crate::distributions::tail::{Tail, f_upper, t_quantile_upper};
 use crate::outcome::{Labelled, Outcome};
 use crate::refusal::Refusal;
 use crate::table::comparisons::{Chosen, PairedComparisons};
@@ -132,41 +132,22 @@ pub fn linear_comparison_model(
         return Ok(Outcome::undefined(NoEstimate::Singular));
     };
     let Tail { p, ln_p } = f_upper(f, columns as f64, df_denominator);
-    // A contrast of items, the first of which is 0 by definition.
-    let estimate = |weight: &dyn Fn(usize) -> f64| {
-        let contrast = DVector::from_fn(items, |at, _| if at == 0 { 0.0 } else { weight(at) });
+    let estimate = |contrast: DVector<f64>| {
         let (variance, df) = degrees.of(&contrast);
         (contrast.dot(&solved.coefficients), variance.sqrt(), df)
     };
     let over_others = (0..items).map(|item| {
         let others = 1.0 / (items - 1) as f64;
-        let (own, se, df) = estimate(&|at| if at == item { 1.0 } else { -others });
+        // The first item is 0 by definition.
+        let (own, se, df) = estimate(DVector::from_fn(items, |at, _| match at {
+            0 => 0.0,
+            at if at == item => 1.0,
+            _ => -others,
+        }));
         let (share, reach) = (0.5 + own, t_quantile_upper(0.025, df) * se);
         ChosenOverOthers { share, se, df, interval_95: [share - reach, share + reach] }
     });
     let over_others: Vec<ChosenOverOthers> = over_others.collect();
-    let mut pairs = Vec::new();
-    for a in 0..items {
-        for b in a + 1..items {
-            let sign = |at: usize| f64::from(u8::from(at == b)) - f64::from(u8::from(at == a));
-            let (difference, se, df) = estimate(&sign);
-            let t = difference / se;
-            let Tail { p, ln_p } = t_two_sided(t, df);
-            let reach = t_quantile_upper(0.025, df) * se;
-            pairs.push(LinearPair {
-                a: data.items[a].clone(),
-                b: data.items[b].clone(),
-                difference,
-                se,
-                df,
-                t,
-                p,
-                ln_p,
-                p_holm: p,
-                interval_95: [difference - reach, difference + reach],
-            });
-        }
-    }
     let residual_sd = (solved.squares / model.residual_df() as f64).sqrt();
     let names = ["participant", "participant:item", "segment:item"].map(str::to_owned);
     let sds = least.at.iter().map(|sd| sd.abs() * residual_sd);
@@ -178,7 +159,7 @@ pub fn linear_comparison_model(
         segments: segment.levels.len(),
         effect: LinearEffect { f, df: columns, df_denominator, p, ln_p },
         items: Labelled::zip(&data.items, over_others),
-        pairs: corrected(pairs),
+        pairs: pairs(&data.items, &estimate),
         left: solved.coefficients[0],
         at_zero: at_zero.map(|(name, _)| name.clone()).collect(),
         sd: Labelled::zip(&names, sds),

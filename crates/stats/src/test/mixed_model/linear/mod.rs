@@ -123,7 +123,7 @@ pub fn linear_mixed_model(
     });
     let coefficients: Vec<LinearCoefficient> = coefficients.collect();
     let (means, pairs) = match factors.as_slice() {
-        [factor] => (means(factor, mean, &estimate), pairs(factor, &estimate)),
+        [factor] => (means(factor, mean, &estimate), pairs(&factor.levels, &estimate)),
         _ => (Labelled(Vec::new()), Vec::new()),
     };
     let residual_sd = spread * (solved.squares / data.residual_df() as f64).sqrt();
@@ -194,8 +194,9 @@ fn means(factor: &Factor, mean: f64, estimate: &Estimate<'_>) -> Labelled<Linear
     Labelled::zip(&factor.levels, means)
 }
 
-fn pairs(factor: &Factor, estimate: &Estimate<'_>) -> Vec<LinearPair> {
-    let count = factor.levels.len();
+/// Every two levels, the second less the first, with Holm's correction over them.
+fn pairs(levels: &[String], estimate: &Estimate<'_>) -> Vec<LinearPair> {
+    let count = levels.len();
     let mut pairs = Vec::new();
     for a in 0..count {
         for b in a + 1..count {
@@ -211,8 +212,8 @@ fn pairs(factor: &Factor, estimate: &Estimate<'_>) -> Vec<LinearPair> {
             let Tail { p, ln_p } = t_two_sided(t, df);
             let reach = t_quantile_upper(0.025, df) * se;
             pairs.push(LinearPair {
-                a: factor.levels[a].clone(),
-                b: factor.levels[b].clone(),
+                a: levels[a].clone(),
+                b: levels[b].clone(),
                 difference,
                 se,
                 df,
