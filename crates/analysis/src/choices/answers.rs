@@ -24,7 +24,7 @@ pub(crate) fn by_factor(
     with_segments(export, question, factor, order, levels).map(|(choices, _)| choices)
 }
 
-/// The same with the segment of each answer; a segment that is not told is missing.
+/// The same with the segment of each answer; a segment that the export does not name is missing.
 pub(crate) fn with_segments(
     export: &Export,
     question: &str,

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use mimique_locale::Language;
 use mimique_report::document::csv_text;
+use serde::Serialize;
 
 use super::precision_table::precision_markdown;
 use super::{Columns, HypothesisPower, Power, PowerPoint, Rate, SmallestDifference};
@@ -59,10 +60,10 @@ fn row(power: &Power, point: &PowerPoint, hypothesis: &HypothesisPower) -> Vec<S
         of_clips.into_iter().for_each(|rate| row.extend(rate_cells(rate)));
     }
     row.push(point.segments.to_string());
-    row.push(scope_code(hypothesis.scope).to_owned());
+    row.push(code(hypothesis.scope));
     let smallest = hypothesis.smallest_difference;
     row.push(smallest.map_or_else(String::new, |own| format!("{:.5}", own.value)));
-    row.push(smallest.map_or("", |own| unit_code(own.unit)).to_owned());
+    row.push(smallest.map_or_else(String::new, |own| code(own.unit)));
     row
 }
 
@@ -206,12 +207,10 @@ pub fn in_scope(scope: ClipScope, language: Language) -> &'static str {
     }
 }
 
-fn scope_code(scope: ClipScope) -> &'static str {
-    match scope {
-        ClipScope::Others => "other_clips",
-        ClipScope::These => "these_clips",
-        ClipScope::NotTold => "no_clips",
-    }
+/// A scope or a unit as the JSON form writes it.
+fn code(value: impl Serialize) -> String {
+    let json = serde_json::to_value(value).ok();
+    json.as_ref().and_then(serde_json::Value::as_str).unwrap_or_default().to_owned()
 }
 
 /// `0.43 points`: a difference in the unit of its answers.
@@ -225,17 +224,6 @@ pub fn smallest_cell(language: Language, own: SmallestDifference) -> String {
         EffectUnit::Worth => (1.0, 2, language.pick(" JND", " DJP")),
     };
     format!("{}{unit}", language.fixed(scale * own.value, decimals))
-}
-
-fn unit_code(unit: EffectUnit) -> &'static str {
-    match unit {
-        EffectUnit::Points => "points",
-        EffectUnit::Shares => "shares",
-        EffectUnit::Seconds => "seconds",
-        EffectUnit::Chosen => "chosen",
-        EffectUnit::ChosenOverOthers => "chosen_over_others",
-        EffectUnit::Worth => "worth",
-    }
 }
 
 /// What stands above the numbers of a hypothesis that has no effect in the parameters.
